@@ -1,0 +1,47 @@
+// One time step of the lattice Boltzmann equation on a node, in place.
+#pragma once
+#include "kernels/collision.hpp"
+#include "kernels/streaming.hpp"
+
+namespace corpuscle {
+
+/// Where the force density of a node comes from. `none` and `uniform` need no field and no clearing pass.
+enum class Forcing { none, uniform, field };
+
+/// f(x + c, t + 1) = f(x, t) + collision + force (MODEL.md, Fluid). With Forcing::field the node's force is read and cleared and the
+/// force-corrected velocity written, so that coupling needs no sweep of its own; the uniform force is added in both forced forms.
+template <class Storage, class Compute, int Parity, Forcing forcing>
+struct CollideStream {
+  StreamingAccessor<Storage, Compute, Parity> populations;
+  PairRelaxation<Compute> relaxation;
+  Compute uniform_force;          ///< along x
+  VectorField<Compute> force;     ///< empty unless Forcing::field
+  VectorField<Compute> velocity;  ///< likewise
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node) const {
+    Compute g[19];
+    populations.load(node, g);
+    Compute fx = 0, fy = 0, fz = 0;
+    if constexpr (forcing != Forcing::none) fx = uniform_force;
+    if constexpr (forcing == Forcing::field) {
+      fx += force(node, 0);
+      fy += force(node, 1);
+      fz += force(node, 2);
+      force(node, 0) = Compute(0);
+      force(node, 1) = Compute(0);
+      force(node, 2) = Compute(0);
+      force(node, 3) = Compute(0);
+    }
+    const Macroscopic<Compute> m = macroscopic(g, fx, fy, fz);
+    if constexpr (forcing == Forcing::field) {
+      velocity(node, 0) = m.u[0];
+      velocity(node, 1) = m.u[1];
+      velocity(node, 2) = m.u[2];
+      velocity(node, 3) = Compute(0);
+    }
+    relaxation.template collide<forcing != Forcing::none>(g, m, fx, fy, fz);
+    populations.store(node, g);
+  }
+};
+
+}  // namespace corpuscle

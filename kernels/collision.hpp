@@ -1,0 +1,101 @@
+// Collision on one node: equilibrium, two-relaxation-time (or BGK) relaxation and Guo forcing. Knows nothing of storage.
+// Guo, Zheng, Shi, PRE 65, 046308 (2002); Ginzburg, Verhaeghe, d'Humieres, Commun. Comput. Phys. 3, 427 (2008).
+#pragma once
+#include "kernels/velocity_set.hpp"
+
+namespace corpuscle {
+
+/// Density deviation rho - 1 and velocity of a node.
+template <class Real>
+struct Macroscopic {
+  Real density_shift;
+  Real u[3];
+};
+
+/// Moments of shifted populations g = f - w; `force` is the force density, u = (sum c f + F/2)/rho.
+template <class Real>
+KOKKOS_FORCEINLINE_FUNCTION Macroscopic<Real> macroscopic(const Real (&g)[19], const Real fx, const Real fy, const Real fz) {
+  Real even = g[0], jx = fx * Real(0.5), jy = fy * Real(0.5), jz = fz * Real(0.5);
+  unroll<D3Q19::pairs>([&](auto p) {
+    constexpr int a = 2 * decltype(p)::value + 1;
+    even += g[a] + g[a + 1];
+    const Real odd = g[a] - g[a + 1];
+    if constexpr (D3Q19::cx[a] != 0) jx += Real(D3Q19::cx[a]) * odd;
+    if constexpr (D3Q19::cy[a] != 0) jy += Real(D3Q19::cy[a]) * odd;
+    if constexpr (D3Q19::cz[a] != 0) jz += Real(D3Q19::cz[a]) * odd;
+  });
+  const Real inverse = Real(1) / (Real(1) + even);
+  return {even, {jx * inverse, jy * inverse, jz * inverse}};
+}
+
+/// Scalar product with the direction q, without multiplications by the compile-time 0 and +-1.
+template <int q, class Real>
+KOKKOS_FORCEINLINE_FUNCTION Real along(const Real x, const Real y, const Real z) {
+  Real sum = 0;
+  if constexpr (D3Q19::cx[q] != 0) sum += Real(D3Q19::cx[q]) * x;
+  if constexpr (D3Q19::cy[q] != 0) sum += Real(D3Q19::cy[q]) * y;
+  if constexpr (D3Q19::cz[q] != 0) sum += Real(D3Q19::cz[q]) * z;
+  return sum;
+}
+
+/// Relaxes the even and odd part of every pair at their own rate. BGK: both 1/tau. TRT: the odd rate follows from Lambda.
+/// On memory-bound hardware TRT costs what BGK costs (perf/bench_fluid), so that one body serves both.
+template <class Real>
+struct PairRelaxation {
+  Real omega_even;
+  Real omega_odd;
+
+  static PairRelaxation bgk(double relaxation_time) {
+    return {Real(1.0 / relaxation_time), Real(1.0 / relaxation_time)};
+  }
+  /// Lambda = (tau+ - 1/2)(tau- - 1/2); 3/16 puts half-way walls exactly half-way.
+  static PairRelaxation trt(double relaxation_time, double magic_parameter) {
+    return {Real(1.0 / relaxation_time), Real(1.0 / (0.5 + magic_parameter / (relaxation_time - 0.5)))};
+  }
+
+  /// Collides the shifted populations in place. With `Forced` false the force is taken to be zero and costs nothing.
+  template <bool Forced>
+  KOKKOS_FORCEINLINE_FUNCTION void collide(Real (&g)[19], const Macroscopic<Real>& m, const Real fx, const Real fy, const Real fz) const {
+    const Real rho = Real(1) + m.density_shift;
+    const Real ux = m.u[0], uy = m.u[1], uz = m.u[2];
+    const Real speed_term = m.density_shift - Real(1.5) * rho * (ux * ux + uy * uy + uz * uz);
+    const Real half_even = Real(1) - Real(0.5) * omega_even;
+    const Real half_odd = Real(1) - Real(0.5) * omega_odd;
+    const Real power = Forced ? half_even * Real(3) * (ux * fx + uy * fy + uz * fz) : Real(0);
+
+    constexpr Real w0 = Real(D3Q19::rest_weight);
+    g[0] += omega_even * (w0 * speed_term - g[0]) - w0 * power;
+    unroll<D3Q19::pairs>([&](auto p) {
+      constexpr int a = 2 * decltype(p)::value + 1;
+      constexpr Real w = Real(D3Q19::weight(a));
+      const Real cu = along<a>(ux, uy, uz);
+      Real even = Real(0.5) * (g[a] + g[a + 1]);
+      Real odd = Real(0.5) * (g[a] - g[a + 1]);
+      even += omega_even * (w * (speed_term + Real(4.5) * rho * cu * cu) - even);
+      odd += omega_odd * (w * Real(3) * rho * cu - odd);
+      if constexpr (Forced) {
+        const Real cf = along<a>(fx, fy, fz);
+        even += w * (half_even * Real(9) * cu * cf - power);
+        odd += w * half_odd * Real(3) * cf;
+      }
+      g[a] = even + odd;
+      g[a + 1] = even - odd;
+    });
+  }
+};
+
+/// Shifted equilibrium plus the non-equilibrium part of a velocity gradient dux/dz (first order in Chapman-Enskog): the exact state of a plane shear flow.
+template <class Real>
+KOKKOS_FORCEINLINE_FUNCTION void equilibrium_with_shear(Real (&g)[19], const Macroscopic<Real>& m, const Real dux_dz, const Real relaxation_time) {
+  const Real rho = Real(1) + m.density_shift;
+  const Real speed_term = m.density_shift - Real(1.5) * rho * (m.u[0] * m.u[0] + m.u[1] * m.u[1] + m.u[2] * m.u[2]);
+  unroll<D3Q19::directions>([&](auto q) {
+    constexpr int i = decltype(q)::value;
+    constexpr Real w = Real(D3Q19::weight(i));
+    const Real cu = along<i>(m.u[0], m.u[1], m.u[2]);
+    g[i] = w * (speed_term + rho * (Real(3) * cu + Real(4.5) * cu * cu) -
+                Real(3) * relaxation_time * rho * Real(D3Q19::cx[i] * D3Q19::cz[i]) * dux_dz);
+  });
+}
+
+}  // namespace corpuscle

@@ -1,0 +1,85 @@
+// The fluid: D3Q19 lattice Boltzmann with in-place streaming, periodic in x and y, walls or periodic in z (MODEL.md, Fluid).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "core/types.hpp"
+#include "kernels/collide_stream.hpp"
+#include "physics/problem.hpp"
+
+namespace corpuscle {
+
+/// All in lattice units.
+struct FluidParameters {
+  std::array<int, 3> nodes{};
+  int halo = 1;                      ///< layers around the lattice; the delta kernel needs 1 (2-, 3-point) or 2 (4-point)
+  CollisionKind collision = CollisionKind::bgk;
+  double relaxation_time = 1;
+  double magic_parameter = 3.0 / 16.0;
+  bool walls = true;                 ///< half-way bounce-back at z = 0 and z = nz
+  std::array<double, 2> wall_velocity{};  ///< along x, lower and upper
+  double body_force = 0;             ///< uniform force density along x
+  bool needs_force = false;          ///< a force field that changes from node to node (cells)
+};
+
+
+template <class Storage, class Compute = Storage>
+class Fluid {
+ public:
+  explicit Fluid(const FluidParameters& parameters);
+
+  /// Rest, or the linear profile between the walls' velocities including its viscous stress: a plane shear flow is stationary from step 0.
+  void initialise();
+  /// Equilibrium at velocities given on the host, [nz][ny][nx][3] (Taylor-Green and other tests).
+  void initialise(const std::vector<double>& velocity);
+
+  /// One step: collide and stream in place, bounce back at the walls. Reads and clears `force()`, writes `velocity()` where the scene has them.
+  void collide_stream();
+
+  /// Prepares `force()` for the collision: adds what was spread into the halo to the nodes that it stands for. At a wall the halo is the mirror
+  /// image with opposite sign (adjoint of the no-slip extension in `gather_velocity`); the difference is a force on the wall.
+  void scatter_force();
+  /// Fills the halo of `velocity()`: periodic images, and u(-z) = 2 u_wall - u(z) beyond walls.
+  void gather_velocity();
+
+  /// Force along x on the lower and the upper wall (per area) of what has been spread beyond them; call before `scatter_force`.
+  std::array<double, 2> wall_force_from_spreading() const;
+  /// Viscous shear stress sigma_xz on the lower and upper wall in the last step, by momentum exchange.
+  std::array<double, 2> wall_shear_stress() const;
+
+  double mass_shift() const;                  ///< sum over nodes of rho - 1
+  std::array<double, 3> momentum() const;     ///< sum over nodes of sum_i c_i f_i (+ F/2 with the uniform force)
+  /// Velocities at the present time on the host, [nz][ny][nx][3].
+  std::vector<float> velocity_host() const;
+  std::vector<double> velocity_host_double() const;
+
+  const Grid& grid() const { return grid_; }
+  const FluidParameters& parameters() const { return parameters_; }
+  VectorField<Compute> force() const { return force_; }
+  VectorField<Compute> velocity() const { return velocity_; }
+  std::int64_t step() const { return step_; }
+  std::size_t bytes() const;
+
+ private:
+  template <int Parity>
+  void collide_stream_parity();
+  template <int Parity>
+  void exchange_populations(bool to_halo);
+  template <int Parity>
+  void bounce_back();
+  void set_populations(const std::vector<double>& velocity, double shear_rate);
+  template <class Body>
+  void with_accessor(const Body& body) const;
+
+  FluidParameters parameters_;
+  Grid grid_;
+  PairRelaxation<Compute> relaxation_;
+  Populations<Storage> populations_;
+  VectorField<Compute> force_, velocity_;
+  std::int64_t step_ = 0;
+};
+
+}  // namespace corpuscle

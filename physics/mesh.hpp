@@ -1,0 +1,49 @@
+// A closed triangulated surface on the host, and the reference shapes of MODEL.md, "Membrane".
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "physics/problem.hpp"
+
+namespace corpuscle {
+
+using Vector3 = Eigen::Vector3d;
+
+/// Closed, consistently oriented (outward) triangulation. Lengths are the caller's (lattice units once scaled).
+struct Mesh {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<int, 3>> faces;
+};
+
+/// Geodesic icosahedron of frequency n on the unit sphere: 20 n^2 faces, 10 n^2 + 2 vertices, in an order that keeps neighbours close in memory.
+Mesh icosphere(int frequency);
+/// Red cell of large radius r (MODEL.md, reference shape; every vertex of the unit sphere keeps x, y and z is replaced).
+Mesh red_cell_mesh(double radius, int frequency);
+Mesh sphere_mesh(double radius, int frequency);
+/// Spheroid with equatorial radius and semi-axis along z = aspect_ratio * radius; the larger of the two semi-axes is `radius`.
+Mesh spheroid_mesh(double radius, double aspect_ratio, int frequency);
+/// Reads an OFF file; scales it so that the largest distance of a vertex from the centroid is `radius`, centroid at the origin.
+/// @throws InputError when the file is missing, malformed, open, non-manifold, badly oriented (fixed when globally inverted), degenerate or not of genus 0.
+Mesh read_off(const std::string& path, double radius);
+/// The mesh of a scene's cell type. `radius` in lattice units already includes relative_radius.
+Mesh make_mesh(const CellSpec& spec, double radius, int frequency);
+
+double mesh_volume(const Mesh& mesh);
+double mesh_area(const Mesh& mesh);
+/// Volume with a shell of thickness h outside (Steiner formula with the discrete mean curvature, H = 1/2 sum_edges length * angle / ... ).
+double mesh_effective_volume(const Mesh& mesh, double shell_thickness);
+Vector3 mesh_centroid(const Mesh& mesh);  ///< of the enclosed volume
+
+/// Neighbourhood of every vertex, shared by all cells of a type (DESIGN.md, decision 7). Row v of each table has `degree(v)` valid entries.
+struct OneRing {
+  int vertex_count = 0;
+  int max_degree = 0;
+  std::vector<int> degree;      ///< [V]
+  std::vector<int> neighbour;   ///< [V][max_degree] in counter-clockwise order seen from outside: faces are (v, n_i, n_{i+1})
+  std::vector<int> opposite;    ///< [V][max_degree] vertex across the edge (n_i, n_{i+1}), on the side away from v
+};
+OneRing one_ring(const Mesh& mesh);
+
+}  // namespace corpuscle

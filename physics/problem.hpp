@@ -1,0 +1,110 @@
+// What a scene asks for, in dimensionless numbers. Each struct mirrors one table of the scene file (docs/scene.md);
+// io/scene fills and validates it, physics/units turns it into lattice parameters. No Kokkos here.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace corpuscle {
+
+enum class FlowKind { shear, poiseuille, rest };
+enum class ShapeKind { red_cell, sphere, spheroid, file };
+enum class StrainLawKind { skalak, neo_hookean };
+enum class CollisionKind { bgk, trt };
+enum class Precision { single_precision, double_precision };
+
+/// [box] Lengths in cell radii; z is the gradient direction and is bounded by walls when `walls` is true, x is the flow direction.
+struct BoxSpec {
+  std::array<double, 3> size{20, 20, 40};
+  bool walls = true;
+};
+
+/// [flow]
+struct FlowSpec {
+  FlowKind kind = FlowKind::shear;
+  std::optional<double> capillary_number;    ///< Ca = eta_0 shear_rate r / kappa_S (Krueger's convention)
+  std::optional<double> capillary_number_G;  ///< Ca_G = eta_0 shear_rate r / G_s = 3 Ca; one of both, none without cells
+  double reynolds_number_max = 0.1;          ///< Re = rho shear_rate r^2 / eta_0 must not exceed this
+};
+
+/// [[cells]].membrane: elastic moduli relative to kappa_S of the cell type (MODEL.md, Membrane).
+struct MembraneSpec {
+  StrainLawKind law = StrainLawKind::skalak;
+  double area_dilation = 2.5;                ///< C = kappa_alpha / kappa_S (Skalak only)
+  double bending = 1.0 / 405.0;              ///< kappa_B / (kappa_S r^2); 0: no bending
+  double bending_constant = 0.8660254037844386;  ///< p in E_B = p kappa_B sum (theta - theta_0)^2
+  std::optional<double> global_area;         ///< kappa_A / kappa_S; absent: the largest modulus that is safely stable
+  std::optional<double> volume;              ///< kappa_V r / kappa_S; absent: likewise; 0: no volume force
+};
+
+/// [[cells]] one cell type.
+struct CellSpec {
+  std::string name;                          ///< used in outputs; default: shape name, numbered when not unique
+  ShapeKind shape = ShapeKind::red_cell;
+  std::string file;                          ///< OFF mesh for ShapeKind::file (path relative to the scene)
+  double aspect_ratio = 0.5;                 ///< spheroid: semi-axis along its symmetry axis / r (oblate < 1 < prolate)
+  double relative_radius = 1.0;              ///< large radius / r
+  double relative_stiffness = 1.0;           ///< kappa_S of this type / kappa_S of the scene
+  std::optional<std::int64_t> count;         ///< exactly one of count, volume_fraction, effective_volume_fraction
+  std::optional<double> volume_fraction;     ///< N V_cell / V_box with the mesh volume
+  std::optional<double> effective_volume_fraction;  ///< with the volume that includes the hydrodynamic shell
+  std::optional<std::array<double, 3>> position;    ///< of the only cell of the type, in cell radii; else packed
+  std::optional<std::array<double, 3>> axis;        ///< symmetry axis of the only cell (reference: z); with `position`
+  MembraneSpec membrane;
+};
+
+/// [contact] short-range repulsion between vertices of different cells, and vertices and walls.
+struct ContactSpec {
+  bool enabled = true;
+  double strength = 1.0;                     ///< kappa_int / kappa_S (lattice units)
+  double range = 1.0;                        ///< d_0 in lattice units
+};
+
+/// [accuracy] the knobs that trade speed for error.
+struct AccuracySpec {
+  std::string preset = "standard";           ///< draft | standard | reference
+  double radius = 8;                         ///< r in lattice units
+  std::optional<int> subdivision;            ///< frequency n of the geodesic icosahedron; default: nearest to the radius
+  int delta_kernel = 3;                      ///< 2 | 3 | 4 points
+  CollisionKind collision = CollisionKind::bgk;
+  double magic_parameter = 3.0 / 16.0;       ///< Lambda of TRT
+  double relaxation_time = 1.0;              ///< tau; viscosity = (tau - 1/2)/3
+  Precision precision = Precision::single_precision;            ///< populations, force and velocity fields
+  Precision membrane_precision = Precision::double_precision;   ///< membrane forces (positions are always double)
+  double mach_max = 0.1;                     ///< wall (or maximum) velocity / speed of sound must not exceed this
+  double shell_thickness = 0.30;             ///< lattice units, for the effective volume fraction
+  std::optional<double> shear_modulus;       ///< kappa_S in lattice units; default: the largest stable one
+  std::optional<double> shear_rate;          ///< in lattice units; default: the largest that all limits allow
+};
+
+/// [run]
+struct RunSpec {
+  double strain = 10;                        ///< length of the run in units of 1/shear_rate (rest: ignored)
+  std::optional<std::int64_t> steps;         ///< length in time steps instead (needed for flow.kind = "rest")
+  std::uint64_t seed = 1;
+  std::string packing;                       ///< file of a saved packing to start from; empty: pack
+  double discard = 0.25;                     ///< fraction of the run left out of the means
+};
+
+/// [output] cadences in strain units (rest: in steps).
+struct OutputSpec {
+  double series_every = 0.05;
+  double snapshot_every = 1.0;               ///< 0: none
+  bool trajectories = true;                  ///< per-cell data at the cadence of the series
+  bool fluid = false;                        ///< velocity field as ImageData at the cadence of the snapshots
+};
+
+/// A complete scene.
+struct Problem {
+  BoxSpec box;
+  FlowSpec flow;
+  std::vector<CellSpec> cells;
+  ContactSpec contact;
+  AccuracySpec accuracy;
+  RunSpec run;
+  OutputSpec output;
+};
+
+}  // namespace corpuscle

@@ -1,0 +1,74 @@
+// From dimensionless numbers to lattice parameters (MODEL.md, "Units and dimensionless numbers").
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "physics/problem.hpp"
+
+namespace corpuscle {
+
+/// Elastic moduli of one cell type in lattice units.
+struct MembraneModuli {
+  StrainLawKind law = StrainLawKind::skalak;
+  double shear = 0;             ///< kappa_S = 3 G_s
+  double area_dilation = 0;     ///< kappa_alpha
+  double bending = 0;           ///< kappa_B
+  double bending_constant = 0;  ///< p
+  double global_area = 0;       ///< kappa_A
+  double volume = 0;            ///< kappa_V
+};
+
+/// One limit on the shear rate: the largest value it allows (lattice units).
+struct ShearRateLimit {
+  std::string name;      ///< "reynolds_number_max", "mach_max", "membrane stability", "shear_modulus", ...
+  double shear_rate;     ///< largest allowed
+};
+
+/// What one cell type costs and fills; filled from its mesh.
+struct CellTypeLattice {
+  std::string name;
+  double radius = 0;            ///< large radius in lattice units
+  int subdivision = 0;          ///< 0 for meshes from files
+  std::int64_t vertices = 0;    ///< per cell
+  std::int64_t faces = 0;
+  double volume = 0;            ///< of the mesh, lattice units
+  double area = 0;
+  double effective_volume = 0;  ///< with the shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
+  std::int64_t count = 0;
+  MembraneModuli moduli;
+};
+
+/// Everything the solver needs, in lattice units (dx = dt = rho_0 = 1).
+struct LatticeParameters {
+  std::array<int, 3> nodes{};          ///< fluid nodes per direction
+  double radius = 0;                   ///< r
+  double relaxation_time = 1;          ///< tau
+  double viscosity = 0;                ///< nu = (tau - 1/2)/3 = eta_0
+  double shear_rate = 0;               ///< wall shear rate for Poiseuille; 0 at rest
+  double wall_velocity = 0;            ///< upper wall moves at +wall_velocity, lower at - (shear)
+  double body_force = 0;               ///< force density along x (Poiseuille)
+  double capillary_number = 0;         ///< with kappa_S; 0 without cells
+  double reynolds_number = 0;
+  double mach_number = 0;
+  double phi_geometric = 0;
+  double phi_effective = 0;
+  double contact_strength = 0;         ///< kappa_int
+  double contact_range = 0;            ///< d_0
+  std::int64_t steps = 0;              ///< of the whole run
+  double steps_per_strain = 0;         ///< 0 at rest
+  std::int64_t series_every = 0;       ///< steps
+  std::int64_t snapshot_every = 0;     ///< steps; 0: none
+  std::vector<CellTypeLattice> cells;
+  std::vector<ShearRateLimit> limits;  ///< all limits, the deciding (smallest) one first
+};
+
+/// Chooses the largest shear rate that every limit allows and converts all quantities.
+/// @throws InputError when a number can't be met (names the key, the value, the allowed range and what to do).
+LatticeParameters to_lattice(const Problem& problem);
+
+/// Explicit coupling is stable for kappa_S <= this (estimate 1.2 eta_0, MODEL.md, Coupling).
+double largest_stable_shear_modulus(double viscosity);
+
+}  // namespace corpuscle
