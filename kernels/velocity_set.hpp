@@ -2,15 +2,16 @@
 #pragma once
 #include <Kokkos_Macros.hpp>
 #include <type_traits>
-#include <utility>
 
 namespace corpuscle {
 
 /// Calls f(std::integral_constant<int, 0>) ... f(std::integral_constant<int, N-1>): loops whose tables must be compile-time constants.
-template <int N, class F>
-KOKKOS_FORCEINLINE_FUNCTION constexpr void unroll(F&& f) {
-  [&]<int... I>(std::integer_sequence<int, I...>) { (f(std::integral_constant<int, I>{}), ...); }
-  (std::make_integer_sequence<int, N>{});
+template <int N, int I = 0, class F>
+KOKKOS_FORCEINLINE_FUNCTION constexpr void unroll(const F& f) {
+  if constexpr (I < N) {
+    f(std::integral_constant<int, I>{});
+    unroll<N, I + 1>(f);
+  }
 }
 
 /// The first direction of every pair points to +z, or lies in the plane and points to +y or +x: streaming then needs halo planes on few sides,
