@@ -1,0 +1,134 @@
+// Kernel that computes the forces of one block of cells: one team a block. Host: a block is a SIMD pack of cells, which share topology and
+// reference state, so that every operation works on several cells at once; devices: a block is one cell, its positions lie in scratch memory.
+#pragma once
+#include <Kokkos_SIMD.hpp>
+#include <type_traits>
+
+#include "kernels/membrane_force.hpp"
+#include "physics/units.hpp"
+
+namespace corpuscle {
+
+template <class T>
+struct AreaVolume {
+  T area{0}, volume{0};
+  KOKKOS_FORCEINLINE_FUNCTION AreaVolume& operator+=(const AreaVolume& other) {
+    area = area + other.area;
+    volume = volume + other.volume;
+    return *this;
+  }
+};
+
+namespace detail {
+template <class Real>
+using HostPack = Kokkos::Experimental::native_simd<Real>;
+template <class Real, bool host>
+struct PackOf {
+  using type = Real;
+  static constexpr int lanes = 1;
+};
+template <class Real>
+struct PackOf<Real, true> {
+  using type = HostPack<Real>;
+  static constexpr int lanes = int(HostPack<Real>::size());
+};
+}  // namespace detail
+
+/// Parameters of a type that change with the reference scale.
+struct GlobalReference {
+  double area = 0, volume = 0;                ///< of the undeformed cell
+  double area_modulus = 0, volume_modulus = 0;
+};
+
+template <class Real, class Law, bool needs_bending>
+struct MembraneBlock {
+  using Pack = typename detail::PackOf<Real, runs_on_host>::type;
+  static constexpr int lanes = detail::PackOf<Real, runs_on_host>::lanes;
+  using Policy = Kokkos::TeamPolicy<ExecSpace>;
+  using Member = typename Policy::member_type;
+
+  MembraneTables<Real> tables;
+  Law law;
+  double bending_stiffness;  ///< 2 p kappa_B
+  GlobalReference global;
+  bool needs_global;
+  int vertices, faces, first_vertex, cell_count, scratch_level;
+  VertexVectors positions, forces;
+
+  int blocks() const { return (cell_count + lanes - 1) / lanes; }
+  std::size_t scratch_bytes() const { return std::size_t(vertices) * 3 * sizeof(Pack) + 64; }
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    // Positions relative to the cell's first vertex: differences stay exact in single precision however far the cell has travelled.
+    Real* const packed = static_cast<Real*>(team.team_scratch(scratch_level).get_shmem_aligned(std::size_t(vertices) * 3 * sizeof(Pack), 64));
+    const int block = team.league_rank();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, vertices), [&](const int v) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        const int base = first_vertex + cell_of(block, lane) * vertices;
+        for (int k = 0; k < 3; ++k)
+          packed[(v * 3 + k) * lanes + lane] = static_cast<Real>(positions(base + v, k) - positions(base, k));
+      }
+    });
+    team.team_barrier();
+
+    const auto position = [packed](const int v) { return Vec3<Pack>{load(packed, v, 0), load(packed, v, 1), load(packed, v, 2)}; };
+    Tension<Pack> tension{Pack(Real(0)), Pack(Real(0))};
+    if (needs_global) {
+      AreaVolume<Pack> sum{Pack(Real(0)), Pack(Real(0))};
+      const auto add_face = [&](const int f, AreaVolume<Pack>& total) {
+        const Vec3<Pack> a = position(tables.faces(f, 0)), b = position(tables.faces(f, 1)), c = position(tables.faces(f, 2));
+        const Vec3<Pack> normal = cross(b - a, c - a);
+        total += AreaVolume<Pack>{Pack(Real(0.5)) * Kokkos::sqrt(dot(normal, normal)), Pack(Real(1.0 / 6)) * dot(a, normal)};
+      };
+      if constexpr (runs_on_host)
+        for (int f = 0; f < faces; ++f) add_face(f, sum);
+      else
+        Kokkos::parallel_reduce(Kokkos::TeamThreadRange(team, faces), add_face, sum);
+      tension.area = Pack(Real(global.area_modulus / global.area)) * (sum.area - Pack(Real(global.area)));
+      tension.volume = Pack(Real(global.volume_modulus / global.volume)) * (sum.volume - Pack(Real(global.volume)));
+    }
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, vertices), [&](const int v) {
+      const Vec3<Pack> force =
+          membrane_force<Real, Pack, Law, needs_bending>(tables, law, Pack(Real(bending_stiffness)), tension, v, position);
+      write(block, v, force);
+    });
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION int cell_of(const int block, const int lane) const {
+    const int cell = block * lanes + lane;
+    return cell < cell_count ? cell : cell_count - 1;  // surplus lanes repeat the last cell
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static Pack load(const Real* packed, const int v, const int k) {
+    if constexpr (std::is_same_v<Pack, Real>) {
+      return packed[v * 3 + k];
+    } else {
+      Pack pack;
+      pack.copy_from(packed + (v * 3 + k) * lanes, Kokkos::Experimental::simd_flag_aligned);
+      return pack;
+    }
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void write(const int block, const int v, const Vec3<Pack>& force) const {
+    if constexpr (std::is_same_v<Pack, Real>) {
+      const int row = first_vertex + block * vertices + v;
+      forces(row, 0) = force.x;
+      forces(row, 1) = force.y;
+      forces(row, 2) = force.z;
+    } else {
+      alignas(64) Real out[3][lanes];
+      force.x.copy_to(out[0], Kokkos::Experimental::simd_flag_aligned);
+      force.y.copy_to(out[1], Kokkos::Experimental::simd_flag_aligned);
+      force.z.copy_to(out[2], Kokkos::Experimental::simd_flag_aligned);
+      const int used = cell_count - block * lanes < lanes ? cell_count - block * lanes : lanes;
+      for (int lane = 0; lane < used; ++lane)
+        for (int k = 0; k < 3; ++k) forces(first_vertex + (block * lanes + lane) * vertices + v, k) = static_cast<double>(out[k][lane]);
+    }
+  }
+};
+
+}  // namespace corpuscle
+
+template <class T>
+struct Kokkos::reduction_identity<corpuscle::AreaVolume<T>> {
+  KOKKOS_FORCEINLINE_FUNCTION static corpuscle::AreaVolume<T> sum() { return {}; }
+};
