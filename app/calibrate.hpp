@@ -1,0 +1,16 @@
+// How fast this machine is: a short measurement, for the predicted time of a run.
+#pragma once
+#include "physics/problem.hpp"
+#include "physics/units.hpp"
+
+namespace corpuscle::app {
+
+/// Seconds of a time step = per_node * nodes + per_vertex * vertices.
+struct Calibration {
+  double per_node = 0;
+  double per_vertex = 0;  ///< 0 without cells
+};
+/// Runs small versions of the scene for about a second. Kokkos must be running.
+Calibration calibrate(const Problem& problem, const LatticeParameters& lattice);
+
+}  // namespace corpuscle::app

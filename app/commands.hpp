@@ -1,0 +1,34 @@
+// The subcommands of `corpuscle`. Each returns the exit code (core/error.hpp) or throws.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace corpuscle::app {
+
+struct SceneOptions {
+  std::string scene;                   ///< path of the TOML file
+  std::vector<std::string> overrides;  ///< key=value
+  int threads = 0;                     ///< 0: Kokkos decides (OMP_NUM_THREADS)
+};
+
+struct PlanOptions : SceneOptions {
+  bool json = false;
+};
+int plan(const PlanOptions& options);
+
+struct RunOptions : SceneOptions {
+  std::string output;
+  bool overwrite = false;
+};
+int run(const RunOptions& options);
+
+/// Starts Kokkos with that many threads; stops it at the end of the scope.
+class KokkosSession {
+ public:
+  explicit KokkosSession(int threads);
+  ~KokkosSession();
+  KokkosSession(const KokkosSession&) = delete;
+  KokkosSession& operator=(const KokkosSession&) = delete;
+};
+
+}  // namespace corpuscle::app

@@ -1,0 +1,77 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "app/commands.hpp"
+#include "core/error.hpp"
+#include "core/version.hpp"
+
+namespace {
+
+constexpr const char* introduction = R"(corpuscle simulates dense suspensions of deformable cells (red blood cells, capsules) in shear flow:
+lattice Boltzmann fluid, immersed boundary coupling, finite element membranes.
+
+Start here:
+  corpuscle plan scenes/quickstart.toml                      what would run, how long, how much memory
+  corpuscle run  scenes/quickstart.toml --output results/a   run it; Ctrl-C stops cleanly, all data are kept
+  corpuscle run  scenes/quickstart.toml --output results/b --set flow.capillary_number=0.02 --set run.strain=5)";
+
+constexpr const char* ending = R"(A scene is a small TOML file, all keys are in docs/scene.md; what a run writes is in docs/outputs.md.
+Exit codes: 0 done, 1 unexpected error or failed output, 2 bad input (nothing was written), 3 the simulation became
+unstable, 130 stopped by Ctrl-C or SIGTERM.)";
+
+void add_scene_options(CLI::App& command, corpuscle::app::SceneOptions& options) {
+  command.add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  command.add_option("--set", options.overrides, "Override a key of the scene, for example --set cells.0.count=10 (may be repeated)")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--threads", options.threads, "Number of host threads (default: OMP_NUM_THREADS, else all cores)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+}
+
+int fail(int code, const char* message) {
+  std::fprintf(stderr, "error: %s\n", message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace corpuscle;
+  CLI::App program{introduction, "corpuscle"};
+  program.footer(ending);
+  program.set_version_flag("--version", "corpuscle " + version_string() + " (" + git_revision() + ")");
+  program.require_subcommand(1);
+
+  app::PlanOptions plan_options;
+  auto* plan = program.add_subcommand("plan", "Show lattice parameters, stability limits, memory and time of a scene; writes nothing");
+  add_scene_options(*plan, plan_options);
+  plan->add_flag("--json", plan_options.json, "Machine-readable output");
+
+  app::RunOptions run_options;
+  auto* run = program.add_subcommand("run", "Run a scene and write its results into a directory");
+  add_scene_options(*run, run_options);
+  run->add_option("-o,--output", run_options.output, "Directory for the results; created")->type_name("DIR")->required();
+  run->add_flag("--overwrite", run_options.overwrite, "Replace the results of an earlier run in that directory");
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    return fail(exit_code::bad_input, (std::string(error.what()) + "; see corpuscle --help").c_str());
+  }
+  try {
+    return *plan ? app::plan(plan_options) : app::run(run_options);
+  } catch (const InputError& error) {
+    return fail(exit_code::bad_input, error.what());
+  } catch (const SimulationError& error) {
+    return fail(exit_code::broken_run, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(exit_code::bad_input, "The scene needs more memory than this machine has (corpuscle plan tells how much): reduce box.size or accuracy.radius.");
+  } catch (const std::exception& error) {
+    return fail(exit_code::failure, error.what());
+  }
+}

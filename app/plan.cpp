@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/calibrate.hpp"
+#include "app/commands.hpp"
+#include "io/progress.hpp"
+#include "io/scene.hpp"
+#include "physics/suspension.hpp"
+
+namespace corpuscle::app {
+namespace {
+
+std::vector<std::string> active_models(const Problem& problem, const LatticeParameters& lattice) {
+  std::vector<std::string> models;
+  models.push_back(problem.accuracy.collision == CollisionKind::bgk ? "D3Q19 BGK" : fmt::format("D3Q19 TRT, Lambda = {:g}", problem.accuracy.magic_parameter));
+  if (problem.box.walls) models.push_back("half-way bounce-back walls in z");
+  if (lattice.body_force != 0) models.push_back("uniform body force along x");
+  if (problem.cells.empty()) return models;
+  models.push_back(fmt::format("immersed boundary, {}-point kernel", problem.accuracy.delta_kernel));
+  for (const auto& type : lattice.cells) {
+    std::string terms = type.moduli.law == StrainLawKind::skalak ? "Skalak" : "neo-Hookean";
+    if (type.moduli.bending > 0) terms += " + bending";
+    if (type.moduli.global_area > 0) terms += " + global area";
+    if (type.moduli.volume > 0) terms += " + volume";
+    models.push_back("membrane of " + type.name + ": " + terms);
+  }
+  if (problem.contact.enabled) models.push_back("contact repulsion between cells and with walls");
+  return models;
+}
+
+nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::size_t bytes, double seconds, const Calibration& c) {
+  nlohmann::json j;
+  j["nodes"] = l.nodes;
+  j["radius"] = l.radius;
+  j["relaxation_time"] = l.relaxation_time;
+  j["viscosity"] = l.viscosity;
+  j["shear_rate"] = l.shear_rate;
+  j["wall_velocity"] = l.wall_velocity;
+  j["body_force"] = l.body_force;
+  j["capillary_number"] = l.capillary_number;
+  j["reynolds_number"] = l.reynolds_number;
+  j["mach_number"] = l.mach_number;
+  j["phi_geometric"] = l.phi_geometric;
+  j["phi_effective"] = l.phi_effective;
+  j["contact_strength"] = l.contact_strength;
+  j["contact_range"] = l.contact_range;
+  j["steps"] = l.steps;
+  j["steps_per_strain"] = l.steps_per_strain;
+  j["series_every_steps"] = l.series_every;
+  j["snapshot_every_steps"] = l.snapshot_every;
+  for (const auto& limit : l.limits) j["limits"].push_back({{"name", limit.name}, {"shear_rate", limit.shear_rate}});
+  for (const auto& t : l.cells)
+    j["cells"].push_back({{"name", t.name},
+                          {"count", t.count},
+                          {"radius", t.radius},
+                          {"subdivision", t.subdivision},
+                          {"vertices", t.vertices},
+                          {"faces", t.faces},
+                          {"volume", t.volume},
+                          {"area", t.area},
+                          {"effective_volume", t.effective_volume},
+                          {"shear_modulus", t.moduli.shear},
+                          {"area_dilation_modulus", t.moduli.area_dilation},
+                          {"bending_modulus", t.moduli.bending},
+                          {"global_area_modulus", t.moduli.global_area},
+                          {"volume_modulus", t.moduli.volume}});
+  j["models"] = active_models(problem, l);
+  j["predicted_bytes"] = bytes;
+  j["predicted_seconds"] = seconds;
+  j["seconds_per_node"] = c.per_node;
+  j["seconds_per_vertex"] = c.per_vertex;
+  return j;
+}
+
+void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes, double seconds, double per_step) {
+  fmt::print("Lattice     {} x {} x {} nodes, r = {:g}, tau = {:g}, viscosity = {:.6g}\n", l.nodes[0], l.nodes[1], l.nodes[2], l.radius, l.relaxation_time, l.viscosity);
+  if (l.shear_rate > 0) {
+    fmt::print("Flow        shear rate = {:.4g} a step, Re = {:.3g}, Ma = {:.3g}", l.shear_rate, l.reynolds_number, l.mach_number);
+    if (l.capillary_number > 0) fmt::print(", Ca = {:.4g} (Ca_G = {:.4g})", l.capillary_number, 3 * l.capillary_number);
+    fmt::print("\n");
+    for (std::size_t i = 0; i < l.limits.size(); ++i)
+      fmt::print("{}{}: shear rate <= {:.4g} ({:.3g} x the chosen one){}\n", i == 0 ? "Limits      " : "            ", l.limits[i].name, l.limits[i].shear_rate,
+                 l.limits[i].shear_rate / l.shear_rate, i == 0 ? "  <- decides" : "");
+  }
+  std::int64_t vertices = 0;
+  for (const auto& t : l.cells) {
+    fmt::print("Cells       {} x {}: r = {:g}, {} vertices, {} faces, kappa_S = {:.4g}, kappa_alpha = {:.4g}, kappa_B = {:.4g}, kappa_A = {:.4g}, kappa_V = {:.4g}\n", t.count,
+               t.name, t.radius, t.vertices, t.faces, t.moduli.shear, t.moduli.area_dilation, t.moduli.bending, t.moduli.global_area, t.moduli.volume);
+    vertices += t.count * t.vertices;
+  }
+  if (!l.cells.empty()) fmt::print("Fraction    {:.4f} geometric, {:.4f} effective (shell of {:g} lattice units)\n", l.phi_geometric, l.phi_effective, problem.accuracy.shell_thickness);
+  bool first = true;
+  for (const auto& model : active_models(problem, l)) {
+    fmt::print("{}{}\n", first ? "Models      " : "            ", model);
+    first = false;
+  }
+  const double nodes = double(l.nodes[0]) * l.nodes[1] * l.nodes[2];
+  fmt::print("Run         {} steps", l.steps);
+  if (l.steps_per_strain > 0) fmt::print(" = {:g} strain units of {:.0f} steps", problem.run.strain, l.steps_per_strain);
+  fmt::print("; series every {} steps", l.series_every);
+  if (l.snapshot_every > 0) fmt::print(", snapshot every {}", l.snapshot_every);
+  fmt::print("\nMemory      {:.1f} MiB ({:.0f} bytes a node, {} vertices)\n", double(bytes) / (1 << 20), double(bytes) / nodes, vertices);
+  fmt::print("Time        {} predicted on this machine with {} threads ({:.1f} million node updates per second), packing not included\n", format_duration(seconds),
+             Kokkos::DefaultExecutionSpace().concurrency(), nodes / per_step / 1e6);
+}
+
+}  // namespace
+
+int plan(const PlanOptions& options) {
+  const Problem problem = read_scene(options.scene, options.overrides);
+  const LatticeParameters lattice = to_lattice(problem);
+  const KokkosSession session(options.threads);
+  const Calibration calibration = calibrate(problem, lattice);
+  std::int64_t vertices = 0;
+  for (const auto& type : lattice.cells) vertices += type.count * type.vertices;
+  const double per_step = calibration.per_node * lattice.nodes[0] * lattice.nodes[1] * lattice.nodes[2] + calibration.per_vertex * double(vertices);
+  const double seconds = per_step * double(lattice.steps);
+  const std::size_t bytes = predicted_bytes(problem, lattice);
+  if (options.json)
+    std::cout << to_json(problem, lattice, bytes, seconds, calibration).dump(2) << "\n";
+  else
+    print(problem, lattice, bytes, seconds, per_step);
+  return 0;
+}
+
+}  // namespace corpuscle::app

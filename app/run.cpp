@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/machine.hpp"
+#include "core/error.hpp"
+#include "core/version.hpp"
+#include "io/packing_file.hpp"
+#include "io/progress.hpp"
+#include "io/run_file.hpp"
+#include "io/scene.hpp"
+#include "io/summary.hpp"
+#include "io/vtkhdf.hpp"
+#include "physics/packing.hpp"
+#include "physics/suspension.hpp"
+
+namespace corpuscle::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> interrupted{false};
+extern "C" void on_signal(int) { interrupted = true; }
+
+/// Refuses directories that hold results or cannot be written; creates nothing.
+void check_output(const fs::path& directory, bool overwrite) {
+  std::error_code error;
+  fs::path existing = fs::absolute(directory);
+  while (!existing.empty() && !fs::exists(existing, error)) existing = existing.parent_path();
+  if (!fs::is_directory(existing, error))
+    throw InputError(fmt::format("--output {}: {} is not a directory; choose another place.", directory.string(), existing.string()));
+  if (access(existing.c_str(), W_OK | X_OK) != 0)
+    throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
+  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf"})
+    if (!overwrite && fs::exists(directory / name, error))
+      throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); choose another directory, or add --overwrite to replace them.", directory.string(), name));
+}
+
+/// Packs with a line that tells how far it is: redrawn on a terminal, every tenth in a log.
+std::vector<double> pack(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, bool terminal) {
+  int shown = -1;
+  const auto positions = place_cells(problem, lattice, types, [&](double scale, double gap, int rounds) {
+    const int percent = int(100 * scale);
+    if (terminal)
+      std::cout << fmt::format("\rpacking: cells at {:3d} % of their size, smallest gap {:.2f} lattice units, round {} ", percent, gap, rounds) << std::flush;
+    else if (percent / 10 > shown)
+      std::cout << fmt::format("packing: cells at {} % of their size, round {}\n", percent, rounds) << std::flush;
+    shown = std::max(shown, percent / 10);
+    return !interrupted;
+  });
+  if (terminal && shown >= 0) std::cout << "\n";
+  return positions;
+}
+
+/// Everything that a run writes.
+class Outputs {
+ public:
+  Outputs(const fs::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types)
+      : file_(directory / "run.h5",
+              RunMetadata{to_toml(problem), version_string(), git_revision(), cpu_model(), cpu_cores(), operating_system(), kokkos_configuration()}, lattice,
+              RunFileOptions{.trajectories = problem.output.trajectories && !types.empty()}) {
+    VtkDomain domain;
+    for (int k = 0; k < 3; ++k) domain.size[k] = lattice.nodes[k];
+    domain.periodic[2] = !problem.box.walls;
+    domain.radius = lattice.radius;
+    domain.at_rest = problem.flow.kind == FlowKind::rest;
+    if (lattice.snapshot_every > 0 && !types.empty()) {
+      std::vector<VtkCellType> surfaces;
+      for (const auto& t : types) surfaces.push_back({t.name, t.reference.faces, t.vertices(), t.count});
+      cells_.emplace(directory / "cells.vtkhdf", std::move(surfaces), domain);
+    }
+    if (lattice.snapshot_every > 0 && problem.output.fluid) fluid_.emplace(directory / "fluid.vtkhdf", lattice.nodes, domain);
+  }
+  void series(const Sample& sample) { file_.append(sample); }
+  void snapshot(const Suspension& suspension) {
+    if (!cells_ && !fluid_) return;
+    const Snapshot s = suspension.snapshot(fluid_.has_value());
+    if (cells_) cells_->append(s);
+    if (fluid_) fluid_->append(s);
+  }
+  void flush() { file_.flush(); }
+
+ private:
+  RunFile file_;
+  std::optional<VtkHdfPolyData> cells_;
+  std::optional<VtkHdfImage> fluid_;
+};
+
+std::string result_line(const Summary& s, const fs::path& directory) {
+  std::string text = fmt::format("{} steps in {} ({:.1f} MLUPS)", s.steps, format_duration(s.wall_seconds), s.mlups);
+  if (std::isfinite(s.relative_viscosity.mean)) {
+    text += fmt::format("; relative viscosity {:.4f}", s.relative_viscosity.mean);
+    if (std::isfinite(s.relative_viscosity.error)) text += fmt::format(" +- {:.4f}", s.relative_viscosity.error);
+    if (s.cell_count > 0 && !s.converged) text += " (not converged: the averaged part is shorter than 20 correlation times)";
+  }
+  return text + fmt::format("; results in {}", directory.string());
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const fs::path directory = options.output;
+  const Problem problem = read_scene(options.scene, options.overrides);
+  const LatticeParameters lattice = to_lattice(problem);
+  check_output(directory, options.overwrite);
+  const auto types = make_cell_types(problem, lattice);
+  Packing packing = packing_layout(lattice);
+  const bool packed_before = !problem.run.packing.empty();
+  if (packed_before) packing = load_packing(problem.run.packing, packing);
+
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  const KokkosSession session(options.threads);
+  const bool terminal = stream_is_terminal(stdout);
+  if (!packed_before) packing.positions = pack(problem, lattice, types, terminal);
+
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
+  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "packing.h5", "scene.toml"}) fs::remove(directory / name, error);
+  std::ofstream(directory / "scene.toml") << to_toml(problem);
+  if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
+
+  const auto suspension = make_suspension(problem, lattice, types, packing.positions);
+  packing.positions = {};
+  Outputs outputs(directory, problem, lattice, types);
+  SeriesSummary series(lattice, problem.run.discard);
+  ProgressOptions look;
+  look.terminal = terminal;
+  look.unicode = locale_is_unicode();
+  look.last_step = lattice.steps;
+  look.last_strain = lattice.shear_rate * double(lattice.steps);
+  Progress progress(std::cout, look);
+
+  const double nodes = double(lattice.nodes[0]) * lattice.nodes[1] * lattice.nodes[2];
+  const Kokkos::Timer timer;
+  ProgressState state;
+  std::string stopped_by = "end", failure;
+  std::int64_t step = 0;
+  try {
+    for (; step < lattice.steps; ++step) {
+      if (interrupted) {
+        stopped_by = "interrupt";
+        break;
+      }
+      if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) outputs.snapshot(*suspension);
+      if (step % lattice.series_every != 0) {
+        suspension->step();
+        continue;
+      }
+      const Sample sample = suspension->step_and_measure();
+      suspension->check();
+      outputs.series(sample);
+      series.add(sample);
+      const auto viscosity = series.relative_viscosity();
+      state.step = step + 1;
+      state.strain = lattice.shear_rate * double(step + 1);
+      state.relative_viscosity = viscosity.mean;
+      state.relative_viscosity_error = viscosity.error;
+      state.volume_drift_max = sample.volume_drift_max;
+      state.mlups = nodes * double(step + 1) / timer.seconds() / 1e6;
+      progress.update(state);
+    }
+    if (lattice.snapshot_every > 0) outputs.snapshot(*suspension);
+  } catch (const SimulationError& broken) {
+    stopped_by = "guard";
+    failure = broken.what();
+  }
+  Kokkos::fence();
+  const double seconds = timer.seconds();
+  state.step = step;
+  state.strain = lattice.shear_rate * double(step);
+  progress.update(state);
+  progress.finish(stopped_by);
+  outputs.flush();
+
+  Summary summary = series.result();
+  summary.steps = step;
+  summary.strain = lattice.shear_rate * double(step);
+  summary.wall_seconds = seconds;
+  summary.mlups = nodes * double(step) / seconds / 1e6;
+  summary.threads = Kokkos::DefaultExecutionSpace().concurrency();
+  summary.bytes_peak = peak_memory_bytes();
+  summary.stopped_by = stopped_by;
+  write_summary(directory / "summary.json", summary);
+  std::cout << result_line(summary, directory) << "\n";
+  if (!failure.empty()) throw SimulationError(failure + " What was computed until then is in " + directory.string() + ".");
+  return stopped_by == "interrupt" ? exit_code::interrupted : exit_code::success;
+}
+
+}  // namespace corpuscle::app

@@ -1,0 +1,29 @@
+// Scene files: TOML in, validated Problem out, and back (docs/scene.md is the reference of all keys).
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/problem.hpp"
+
+namespace corpuscle {
+
+/// Reads and validates a scene. `overrides` are `key=value` with dotted keys ("flow.capillary_number=0.05", "cells.0.count=10"), the
+/// value in TOML syntax or a bare string. An override replaces the alternatives of its key that the file gives (count for volume_fraction …),
+/// and overriding accuracy.preset drops the file's own knobs that the preset sets.
+/// @throws InputError with one sentence: where, the key, its value, what is allowed, what to do.
+Problem read_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// The same for a scene in memory. `origin` names it in messages; relative file names in the scene are taken from its directory.
+Problem parse_scene(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides = {});
+
+/// The merged scene with every default written out; parse_scene() gives the same Problem back.
+std::string to_toml(const Problem& problem);
+
+/// Markdown tables of all keys, one per section, made from the table that drives the reader; docs/scene.md contains them verbatim.
+std::string scene_key_reference();
+
+/// Dotted names of all keys; the number of a cell type is written `*` ("cells.*.membrane.bending").
+std::vector<std::string> scene_key_names();
+
+}  // namespace corpuscle

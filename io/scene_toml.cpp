@@ -1,0 +1,224 @@
+#include "io/scene_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "io/scene_keys.hpp"
+
+namespace corpuscle::scene {
+
+namespace {
+
+/// Keys of which a scene gives at most one: an override of one removes the others that come from the file.
+const std::vector<std::vector<std::string_view>> alternatives = {
+    {"cells.*.count", "cells.*.volume_fraction", "cells.*.effective_volume_fraction"},
+    {"flow.capillary_number", "flow.capillary_number_G"},
+    {"run.strain", "run.steps"},
+    {"cells.*.shape", "cells.*.file"},
+};
+/// What an override of the preset takes over from the file: without this `--set accuracy.preset=draft` had no effect on a merged scene.
+constexpr std::array<std::string_view, 6> preset_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "precision"};
+
+bool valid_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const int more = lead < 0x80 ? 0 : lead >> 5 == 6 ? 1 : lead >> 4 == 14 ? 2 : lead >> 3 == 30 ? 3 : -1;
+    if (more < 0 || i + more >= text.size()) return false;
+    for (int k = 1; k <= more; ++k) {
+      if (static_cast<unsigned char>(text[i + k]) >> 6 != 2) return false;
+    }
+    i += 1 + more;
+  }
+  return true;
+}
+
+/// Position of the first non-ASCII character outside of strings and comments, where TOML allows none; npos if there is none.
+/// toml++ 3.3 runs into undefined behaviour on some of them instead of reporting them.
+std::size_t stray_character(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+    } else if (c == '"' || c == '\'') {
+      const bool multi_line = text.substr(i, 3) == std::string(3, c);
+      const std::string_view end = text.substr(i, multi_line ? 3 : 1);
+      for (i += end.size(); i < text.size() && text.substr(i, end.size()) != end && (multi_line || text[i] != '\n'); ++i) {
+        if (c == '"' && text[i] == '\\') ++i;
+      }
+      i += end.size() - 1;
+    } else if (static_cast<unsigned char>(c) >= 0x80) {
+      return i;
+    }
+  }
+  return std::string_view::npos;
+}
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> parts;
+  for (std::size_t start = 0;;) {
+    const std::size_t dot = path.find('.', start);
+    parts.emplace_back(path.substr(start, dot == std::string_view::npos ? dot : dot - start));
+    if (dot == std::string_view::npos) return parts;
+    start = dot + 1;
+  }
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// The value of an override as a table {v = value}; what isn't one TOML value is a bare string.
+toml::table override_value(const std::string& text) {
+  const std::string assignment = "v = " + text;
+  if (text.find_first_of("\r\n") == std::string::npos && stray_character(assignment) == std::string::npos && valid_utf8(text)) {
+    try {
+      toml::table parsed = toml::parse(assignment);
+      if (parsed.size() == 1) return parsed;
+    } catch (const toml::parse_error&) {  // bare string, below
+    }
+  }
+  return toml::table{{"v", text}};
+}
+
+/// The table that holds the last part of `path`; sections the file leaves out are created.
+toml::table& parent_table(Document& document, const std::string& path, const std::vector<std::string>& parts) {
+  toml::node* node = &document.root;
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+    if (toml::array* array = node->as_array()) {
+      std::size_t index = array->size();
+      std::from_chars(parts[i].data(), parts[i].data() + parts[i].size(), index);
+      if (index >= array->size()) {
+        throw InputError(fmt::format("--set: {}: there is no cell type {}, the scene has {} [[cells]] (numbered from 0)", one_line(path), parts[i], array->size()));
+      }
+      node = array->get(index);
+    } else if (toml::table* table = node->as_table()) {
+      if (!table->contains(parts[i])) {
+        if (parts[i] == "cells") throw InputError(fmt::format("--set: {}: the scene has no [[cells]]; add a cell type to the file first", one_line(path)));
+        table->insert(parts[i], toml::table{});
+      }
+      node = table->get(parts[i]);
+    } else {
+      break;
+    }
+  }
+  toml::table* table = node->as_table();
+  if (table == nullptr) throw InputError(fmt::format("--set: {}: the scene gives a single value where this key needs a table; correct the scene first", one_line(path)));
+  return *table;
+}
+
+void apply_override(Document& document, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const auto trim = [](std::string s) {
+    s.erase(0, s.find_first_not_of(" \t"));
+    s.erase(s.find_last_not_of(" \t") + 1);
+    return s;
+  };
+  const std::string path = trim(text.substr(0, equals));
+  if (equals == std::string::npos || path.empty()) {
+    throw InputError(fmt::format("--set: {} isn't of the form key=value, for instance flow.capillary_number=0.05", quote(one_line(text))));
+  }
+  const std::string pattern = pattern_of(path);
+  if (find_key(pattern) == nullptr && !(is_section(pattern) && pattern == "cells.*.membrane")) {
+    throw InputError(fmt::format("--set: {} isn't a key of a scene; the nearest known key is {}", one_line(path), nearest_key(pattern)));
+  }
+  const std::vector<std::string> parts = split(path);
+  toml::table& table = parent_table(document, path, parts);
+  toml::table value = override_value(trim(text.substr(equals + 1)));
+  table.insert_or_assign(parts.back(), std::move(*value.get("v")));
+  document.overridden.insert(path);
+}
+
+/// Removes from the file what an override replaces.
+void drop_replaced(Document& document) {
+  for (const std::string& path : document.overridden) {
+    const std::string pattern = pattern_of(path);
+    toml::table& table = parent_table(document, path, split(path));
+    const std::string prefix = path.substr(0, path.rfind('.') + 1);
+    const auto drop = [&](std::string_view leaf) {
+      if (!document.overridden.contains(prefix + std::string(leaf))) table.erase(leaf);
+    };
+    for (const auto& group : alternatives) {
+      if (std::find(group.begin(), group.end(), pattern) == group.end()) continue;
+      for (const std::string_view other : group) {
+        if (other != pattern) drop(other.substr(other.rfind('.') + 1));
+      }
+    }
+    if (pattern == "accuracy.preset") std::for_each(preset_knobs.begin(), preset_knobs.end(), drop);
+  }
+}
+
+}  // namespace
+
+Document parse_document(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
+  Document document;
+  document.origin = one_line(origin, 300);
+  const std::size_t zero = text.find('\0');
+  if (zero != std::string_view::npos || !valid_utf8(text)) {
+    throw InputError(fmt::format("{}: isn't a text file (TOML in UTF-8); a scene starts with tables such as [box] and [flow], see docs/scene.md", document.origin));
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark of some editors
+  if (const std::size_t stray = stray_character(text); stray != std::string_view::npos) {
+    const std::string_view rest = text.substr(stray);
+    std::size_t length = 1;
+    while (length < rest.size() && static_cast<unsigned char>(rest[length]) >> 6 == 2) ++length;
+    throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment", document.origin,
+                                 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
+  }
+  try {
+    document.root = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: isn't valid TOML at column {}: {}", document.origin, error.source().begin.line, error.source().begin.column, one_line(error.description(), 300)));
+  }
+  if (document.root.empty()) {
+    throw InputError(fmt::format("{}: the scene is empty; it needs at least [box] and [flow], see docs/scene.md", document.origin));
+  }
+  for (const std::string& text_of_override : overrides) apply_override(document, text_of_override);
+  drop_replaced(document);
+  return document;
+}
+
+std::string where(const Document& document, const std::string& path, const toml::node* node) {
+  for (const std::string& set : document.overridden) {
+    if (path == set || path.starts_with(set + ".")) return "--set: ";
+  }
+  if (node == nullptr || node->source().begin.line == 0) return document.origin + ": ";
+  return fmt::format("{}:{}: ", document.origin, node->source().begin.line);
+}
+
+std::string one_line(std::string_view text, std::size_t longest) {
+  std::string out;
+  for (const char c : text) {
+    if (out.size() >= longest && (static_cast<unsigned char>(c) >> 6) != 2) return out + "...";  // never inside a UTF-8 sequence
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) out += out.empty() || out.back() == ' ' ? "" : " ";
+    else out += c;
+  }
+  return out;
+}
+
+std::string shown(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (const auto* text = node.as_string()) return quote(one_line(text->get()));
+  if (const auto* value = node.as_floating_point()) return fmt::format("{}", value->get());  // shortest form; toml++ prints 0.84999999999999998
+  if (const auto* list = node.as_array()) {
+    std::string text;
+    for (std::size_t i = 0; i < list->size() && text.size() < 60; ++i) text += (i ? ", " : "") + shown(*list->get(i));
+    return one_line("[" + text + "]");
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) { out << value; });
+  return one_line(out.str());
+}
+
+std::string pattern_of(std::string_view path) {
+  std::string pattern;
+  const std::vector<std::string> parts = split(path);
+  for (std::size_t i = 0; i < parts.size(); ++i) pattern += (i ? "." : "") + (i == 1 && parts[0] == "cells" && is_number(parts[i]) ? "*" : parts[i]);
+  return pattern;
+}
+
+}  // namespace corpuscle::scene

@@ -1,0 +1,34 @@
+// TOML text and overrides to one table, and where each of its values came from. Only io/scene*.cpp include this (toml++ is slow to compile).
+#pragma once
+// toml++ 3.3 asserts where it then copes: a date followed by a space and a character ("x = 1979-05-27 1") would abort a debug build.
+#define TOML_ASSERT(expression) static_cast<void>(0)
+#include <toml++/toml.h>
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corpuscle::scene {
+
+/// A parsed scene with the overrides merged in.
+struct Document {
+  toml::table root;
+  std::string origin;                ///< named in messages
+  std::set<std::string> overridden;  ///< display paths ("cells.0.count") set on the command line
+};
+
+/// @throws InputError for bad TOML, an empty scene, a malformed override or one whose key doesn't exist.
+Document parse_document(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides);
+
+/// "scene.toml:12: " or "--set: ", the start of every message about a value.
+std::string where(const Document& document, const std::string& path, const toml::node* node = nullptr);
+
+/// A value on one line, shortened, without control characters: safe inside a message.
+std::string shown(const toml::node& node);
+std::string one_line(std::string_view text, std::size_t longest = 60);
+
+/// "cells.0.membrane.law" -> "cells.*.membrane.law", the name in the table of keys.
+std::string pattern_of(std::string_view path);
+
+}  // namespace corpuscle::scene

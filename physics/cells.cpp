@@ -1,0 +1,54 @@
+#include "physics/cells.hpp"
+
+namespace corpuscle {
+
+std::vector<CellType> make_cell_types(const Problem& problem, const LatticeParameters& lattice) {
+  std::vector<CellType> types;
+  int cell = 0, vertex = 0;
+  for (std::size_t t = 0; t < problem.cells.size(); ++t) {
+    const auto& from = lattice.cells[t];
+    CellType type;
+    type.name = from.name;
+    type.radius = from.radius;
+    type.moduli = from.moduli;
+    type.reference = make_mesh(problem.cells[t], from.radius, from.subdivision);
+    type.count = int(from.count);
+    type.first_cell = cell;
+    type.first_vertex = vertex;
+    cell += type.count;
+    vertex += type.count * type.vertices();
+    types.push_back(std::move(type));
+  }
+  return types;
+}
+
+Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) : types_(std::move(types)) {
+  for (const auto& type : types_) {
+    cell_count_ += type.count;
+    vertex_count_ += type.count * type.vertices();
+  }
+  positions_ = VertexVectors("positions", vertex_count_);
+  velocities_ = VertexVectors("velocities", vertex_count_);
+  forces_ = VertexVectors("forces", vertex_count_);
+  cell_of_vertex_ = Array1<int>("cell_of_vertex", vertex_count_);
+  Kokkos::deep_copy(positions_, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(positions.data(), vertex_count_));
+  const auto cell_of = Kokkos::create_mirror_view(cell_of_vertex_);
+  for (const auto& type : types_)
+    for (int i = 0; i < type.count * type.vertices(); ++i) cell_of(type.first_vertex + i) = type.first_cell + i / type.vertices();
+  Kokkos::deep_copy(cell_of_vertex_, cell_of);
+}
+
+void Cells::advance() {
+  const auto x = positions_, u = velocities_;
+  Kokkos::parallel_for("advance", Kokkos::RangePolicy<ExecSpace>(0, vertex_count_), KOKKOS_LAMBDA(const int v) {
+    for (int k = 0; k < 3; ++k) x(v, k) += u(v, k);
+  });
+}
+
+std::vector<double> Cells::to_host(const VertexVectors& vectors) {
+  std::vector<double> host(vectors.extent(0) * 3);
+  Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)), vectors);
+  return host;
+}
+
+}  // namespace corpuscle

@@ -1,0 +1,52 @@
+// Contact forces between cells and with walls, by neighbour lists with a skin: O(N), rebuilt only when a vertex has moved half the skin.
+#pragma once
+#include "core/cell_list.hpp"
+#include "core/types.hpp"
+#include "kernels/contact.hpp"
+#include "kernels/stencil.hpp"
+
+namespace corpuscle {
+
+/// Lattice units.
+struct ContactParameters {
+  double strength = 0;  ///< kappa_int
+  double range = 1;     ///< d_0
+  double skin = 0.6;    ///< extra reach of the lists
+};
+
+/// Vertices of other cells near each vertex: row v is list(begin(v)) ... list(begin(v + 1) - 1), every pair in both rows, ascending.
+struct NeighbourRows {
+  Array1<int> begin, list;
+};
+
+class Contact {
+ public:
+  /// @param cell_of_vertex [V]; vertices of the same cell do not repel each other (its periodic images do)
+  Contact(const PeriodicBox& box, const ContactParameters& parameters, const Array1<int>& cell_of_vertex);
+
+  /// Adds the repulsion to `forces` ([V][3], lattice units).
+  void add_forces(const VertexVectors& positions, const VertexVectors& forces);
+
+  /// Smallest distance between vertices of different cells among those within the range of the lists; the range plus skin if there are none.
+  double smallest_gap(const VertexVectors& positions);
+
+  const NeighbourRows& neighbours() const { return rows_; }
+  const ContactParameters& parameters() const { return parameters_; }
+  void set_strength(double strength) { parameters_.strength = strength; }
+  std::int64_t rebuilds() const { return rebuilds_; }
+  std::size_t bytes() const;
+
+ private:
+  void update_lists(const VertexVectors& positions);
+
+  PeriodicBox box_;
+  ContactParameters parameters_;
+  Array1<int> cell_of_vertex_, keys_;
+  BinGrid grid_;
+  CellList bins_;
+  NeighbourRows rows_;
+  VertexVectors built_at_;
+  std::int64_t rebuilds_ = 0;
+};
+
+}  // namespace corpuscle

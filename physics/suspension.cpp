@@ -1,0 +1,207 @@
+#include "physics/suspension.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+#include "physics/cell_sampler.hpp"
+#include "physics/contact.hpp"
+#include "physics/coupling.hpp"
+#include "physics/fluid.hpp"
+#include "physics/membrane.hpp"
+#include "physics/suspension_sample.hpp"
+
+namespace corpuscle {
+namespace {
+
+FluidParameters fluid_parameters(const Problem& problem, const LatticeParameters& lattice) {
+  FluidParameters p;
+  p.nodes = lattice.nodes;
+  p.collision = problem.accuracy.collision;
+  p.relaxation_time = lattice.relaxation_time;
+  p.magic_parameter = problem.accuracy.magic_parameter;
+  p.walls = problem.box.walls;
+  if (problem.flow.kind == FlowKind::shear) p.wall_velocity = {-lattice.wall_velocity, lattice.wall_velocity};
+  p.body_force = lattice.body_force;
+  p.needs_force = !problem.cells.empty();
+  if (p.needs_force) p.halo = Coupling<double>::halo_width(problem.accuracy.delta_kernel);
+  return p;
+}
+
+template <class Real>
+class SuspensionOf final : public Suspension {
+ public:
+  SuspensionOf(const Problem& problem, const LatticeParameters& lattice, std::vector<CellType> types, const std::vector<double>& positions)
+      : problem_(problem), lattice_(lattice), fluid_(fluid_parameters(problem, lattice)) {
+    fluid_.initialise();
+    if (types.empty()) return;
+    const PeriodicBox box(fluid_.grid(), problem.box.walls);
+    cells_ = std::make_unique<Cells>(std::move(types), positions);
+    coupling_ = std::make_unique<Coupling<Real>>(fluid_.grid(), problem.box.walls, problem.accuracy.delta_kernel);
+    sampler_ = std::make_unique<CellSampler>(*cells_, box);
+    for (const auto& type : cells_->types())
+      membranes_.push_back(make_membrane(type.reference, type.moduli, problem.accuracy.membrane_precision, type.first_vertex, type.count));
+    if (problem.contact.enabled)
+      contact_ = std::make_unique<Contact>(box, ContactParameters{lattice.contact_strength, lattice.contact_range}, cells_->cell_of_vertex());
+  }
+
+  void step() override { step_with(nullptr); }
+
+  Sample step_and_measure() override {
+    Sample sample;
+    sample.step = fluid_.step();
+    sample.strain = lattice_.shear_rate * double(fluid_.step());
+    step_with(&sample);
+    return sample;
+  }
+
+  Snapshot snapshot(bool with_fluid) const override {
+    Snapshot s;
+    s.step = fluid_.step();
+    s.strain = lattice_.shear_rate * double(fluid_.step());
+    if (cells_) {
+      s.positions = cells_->positions_host();
+      s.velocities = cells_->velocities_host();
+    }
+    if (with_fluid) s.fluid_velocity = fluid_.velocity_host();
+    return s;
+  }
+
+  void check() const override;
+  std::int64_t steps_done() const override { return fluid_.step(); }
+  const Cells* cells() const override { return cells_.get(); }
+  std::size_t bytes() const override {
+    std::size_t total = fluid_.bytes();
+    if (cells_) total += cells_->bytes() + coupling_->bytes();
+    for (const auto& m : membranes_) total += m->bytes();
+    if (contact_) total += contact_->bytes();
+    return total;
+  }
+
+ private:
+  /// The time step. With a sample, each quantity is measured at the moment when it is known, at time t = step.
+  void step_with(Sample* sample) {
+    if (cells_) {
+      for (const auto& membrane : membranes_) membrane->compute_forces(cells_->positions(), cells_->forces());
+      if (sample) sampler_->measure_membrane_stress(*cells_);
+      if (contact_) contact_->add_forces(cells_->positions(), cells_->forces());
+      if (sample && contact_) sampler_->measure_contact_stress(*cells_, *contact_);
+      coupling_->spread(cells_->positions(), cells_->forces(), fluid_.force());
+      if (sample && problem_.box.walls) spread_on_walls_ = fluid_.wall_force_from_spreading();
+      fluid_.scatter_force();
+    }
+    fluid_.collide_stream();
+    if (cells_) {
+      fluid_.gather_velocity();
+      coupling_->interpolate(cells_->positions(), cells_->velocities(), fluid_.velocity());
+      if (sample) sampler_->measure_shape(*cells_);
+      cells_->advance();
+    }
+    if (sample) finish(*sample);
+  }
+
+  void finish(Sample& sample) const {
+    if (cells_) sample.cells = sampler_->collect();
+    average_over_cells(sample, cells_ ? cells_->types() : std::vector<CellType>{}, lattice_, problem_.box.walls);
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    sample.wall_shear_stress = {none, none};
+    sample.wall_relative_viscosity = none;
+    sample.velocity_max = velocity_max();
+    if (!problem_.box.walls) return;
+    sample.wall_shear_stress = fluid_.wall_shear_stress();
+    if (cells_) {
+      // What was spread beyond a wall acts on the wall itself: traction +sigma_xz below, -sigma_xz above.
+      sample.wall_shear_stress[0] += spread_on_walls_[0];
+      sample.wall_shear_stress[1] -= spread_on_walls_[1];
+    }
+    const double unit = lattice_.viscosity * lattice_.shear_rate;
+    if (problem_.flow.kind == FlowKind::shear)
+      sample.wall_relative_viscosity = 0.5 * (sample.wall_shear_stress[0] + sample.wall_shear_stress[1]) / unit;
+    if (problem_.flow.kind == FlowKind::poiseuille) {
+      // Apparent viscosity: the flow rate of the fluid alone over the present one, from the mean velocity g H^2/(12 nu).
+      const double height = lattice_.nodes[2];
+      const double nodes = double(lattice_.nodes[0]) * lattice_.nodes[1] * lattice_.nodes[2];
+      sample.relative_viscosity = lattice_.body_force * height * height / (12 * lattice_.viscosity) / (fluid_.momentum()[0] / nodes);
+      sample.bulk_relative_viscosity = none;
+    }
+  }
+
+  double velocity_max() const;
+
+  Problem problem_;
+  LatticeParameters lattice_;
+  Fluid<Real> fluid_;
+  std::unique_ptr<Cells> cells_;
+  std::unique_ptr<Coupling<Real>> coupling_;
+  std::unique_ptr<CellSampler> sampler_;
+  std::vector<std::unique_ptr<Membrane>> membranes_;
+  std::unique_ptr<Contact> contact_;
+  std::array<double, 2> spread_on_walls_{};
+};
+
+/// Largest squared speed; anything that is not a number counts as infinite.
+double largest_squared_speed(const VertexVectors& u) {
+  double largest = 0;
+  Kokkos::parallel_reduce("velocity_max", Kokkos::RangePolicy<ExecSpace>(0, u.extent(0)), KOKKOS_LAMBDA(const int v, double& worst) {
+    double squared = u(v, 0) * u(v, 0) + u(v, 1) * u(v, 1) + u(v, 2) * u(v, 2);
+    if (!(squared < 1e300)) squared = 1e300;
+    worst = squared > worst ? squared : worst;
+  }, Kokkos::Max<double>(largest));
+  return largest;
+}
+
+template <class Real>
+double SuspensionOf<Real>::velocity_max() const {
+  return cells_ ? std::sqrt(largest_squared_speed(cells_->velocities())) : 0.0;
+}
+
+template <class Real>
+void SuspensionOf<Real>::check() const {
+  constexpr double limit = 0.3;
+  if (!cells_) {
+    if (!std::isfinite(fluid_.mass_shift()))
+      throw SimulationError("The fluid became unstable before step " + std::to_string(fluid_.step()) +
+                            " (a density is not a number): lower accuracy.mach_max or flow.reynolds_number_max, or move accuracy.relaxation_time away from 0.5.");
+    return;
+  }
+  if (velocity_max() <= limit) return;
+  const auto x = cells_->positions_host(), u = cells_->velocities_host();
+  for (const auto& type : cells_->types())
+    for (int i = 0; i < type.count * type.vertices(); ++i) {
+      const std::size_t v = 3 * std::size_t(type.first_vertex + i);
+      const double speed = std::sqrt(u[v] * u[v] + u[v + 1] * u[v + 1] + u[v + 2] * u[v + 2]);
+      if (speed <= limit) continue;
+      throw SimulationError("Cell " + std::to_string(type.first_cell + i / type.vertices()) + " (" + type.name + ") became unstable before step " +
+                            std::to_string(fluid_.step()) + ": a vertex near (" + std::to_string(x[v]) + ", " + std::to_string(x[v + 1]) + ", " +
+                            std::to_string(x[v + 2]) + ") moves at " + std::to_string(speed) + " lattice units a step, the limit is " + std::to_string(limit) +
+                            "; likely the membrane is too stiff for the time step: lower accuracy.shear_modulus, membrane.area_dilation or contact.strength.");
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<Suspension> make_suspension(const Problem& problem, const LatticeParameters& lattice, std::vector<CellType> types,
+                                            const std::vector<double>& positions) {
+  if (problem.accuracy.precision == Precision::single_precision)
+    return std::make_unique<SuspensionOf<float>>(problem, lattice, std::move(types), positions);
+  return std::make_unique<SuspensionOf<double>>(problem, lattice, std::move(types), positions);
+}
+
+std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lattice) {
+  const std::size_t real = problem.accuracy.precision == Precision::single_precision ? 4 : 8;
+  const bool cells = !problem.cells.empty();
+  const int halo = cells ? Coupling<double>::halo_width(problem.accuracy.delta_kernel) : 1;
+  const Grid grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], halo};
+  std::size_t bytes = grid.padded_nodes() * real * (19 + (cells ? 8 : 0));
+  std::size_t vertices = 0;
+  for (const auto& type : lattice.cells) vertices += std::size_t(type.count) * type.vertices;
+  bytes += vertices * (3 * 3 * 8 + 4);      // positions, velocities, forces, cell number
+  if (runs_on_host) bytes += vertices * 8;  // slab keys and order of spreading
+  if (cells && problem.contact.enabled) {
+    const double edge = lattice.contact_range + ContactParameters{}.skin;
+    bytes += vertices * (24 + 4 * 3) + std::size_t(double(grid.nodes()) / (edge * edge * edge) * 8);
+  }
+  return bytes;
+}
+
+}  // namespace corpuscle

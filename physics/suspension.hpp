@@ -1,0 +1,39 @@
+// The time step of a suspension of cells, assembled from what the scene contains.
+#pragma once
+#include <memory>
+
+#include "physics/cells.hpp"
+#include "physics/problem.hpp"
+#include "physics/sample.hpp"
+#include "physics/units.hpp"
+
+namespace corpuscle {
+
+/// A running simulation. The precision of the fluid is hidden behind this interface.
+class Suspension {
+ public:
+  virtual ~Suspension() = default;
+
+  /// One time step (MODEL.md): F = -dE/dx + contact; f = spread F; collide and stream; u = interpolate; x += u.
+  virtual void step() = 0;
+  /// One time step, and what was measured at its beginning.
+  virtual Sample step_and_measure() = 0;
+  /// Positions and velocities of all vertices now.
+  virtual Snapshot snapshot(bool with_fluid) const = 0;
+  /// @throws SimulationError when a vertex is not a number, too fast (|u| > 0.3) or outside the walls: names cell, step and likely cause.
+  virtual void check() const = 0;
+
+  virtual std::int64_t steps_done() const = 0;
+  virtual const Cells* cells() const = 0;  ///< null without cells
+  /// Bytes allocated for fields and vertices.
+  virtual std::size_t bytes() const = 0;
+};
+
+/// @param positions of all vertices, from `place_cells`; empty without cells
+std::unique_ptr<Suspension> make_suspension(const Problem& problem, const LatticeParameters& lattice, std::vector<CellType> types,
+                                            const std::vector<double>& positions);
+
+/// Bytes that `make_suspension` will allocate: the formula that `plan` prints.
+std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lattice);
+
+}  // namespace corpuscle

@@ -1,0 +1,106 @@
+#include "physics/contact.hpp"
+
+#include <cmath>
+
+#include "core/random.hpp"
+#include "tests/catch.hpp"
+
+using namespace corpuscle;
+
+namespace {
+
+struct Scattered {
+  VertexVectors positions, forces;
+  Array1<int> cell;
+};
+Scattered scatter(int count, const double (&length)[3], int vertices_per_cell, std::uint64_t seed) {
+  Scattered s{VertexVectors("x", count), VertexVectors("F", count), Array1<int>("cell", count)};
+  auto x = Kokkos::create_mirror_view(s.positions);
+  auto c = Kokkos::create_mirror_view(s.cell);
+  RandomStream random(seed);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) x(i, k) = random.uniform(0, length[k]) + (k < 2 ? length[k] * (i % 3 - 1) : 0);
+    c(i) = i / vertices_per_cell;
+  }
+  Kokkos::deep_copy(s.positions, x);
+  Kokkos::deep_copy(s.cell, c);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("Contact forces equal the sum over all pairs, in boxes of any size", "[contact]") {
+  struct Box {
+    double length[3];
+    int count;
+  };
+  for (const Box& b : {Box{{8, 9, 10}, 400}, Box{{2, 3, 12}, 100}, Box{{1.7, 20, 3.3}, 120}, Box{{4, 4, 2}, 60}})
+    for (const bool walls : {false, true}) {
+      Grid grid{int(b.length[0]), int(b.length[1]), int(b.length[2]), 1};
+      PeriodicBox box(grid, walls);
+      for (int k = 0; k < 3; ++k) box.length[k] = b.length[k];
+      const auto s = scatter(b.count, b.length, 7, 3);
+      const double range = 0.8;
+      Contact contact(box, {0.3, range, 0.05}, s.cell);
+      contact.add_forces(s.positions, s.forces);
+      const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, s.positions);
+      const auto f = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, s.forces);
+      const Repulsion repulsion{0.3, range};
+      double total[3] = {}, wall = 0;
+      for (int i = 0; i < b.count; ++i) {
+        double expected[3] = {};
+        for (int j = 0; j < b.count; ++j) {
+          double d[3], square = 0;
+          bool same = true;
+          for (int k = 0; k < 3; ++k) {
+            d[k] = x(i, k) - x(j, k);
+            const double raw = d[k];
+            if (k < 2 || !walls) d[k] -= b.length[k] * std::round(d[k] / b.length[k]);
+            same = same && raw == d[k];
+            square += d[k] * d[k];
+          }
+          if (i == j || (same && i / 7 == j / 7) || square >= range * range) continue;
+          const double distance = std::sqrt(square);
+          for (int k = 0; k < 3; ++k) expected[k] += repulsion.magnitude(distance) * d[k] / distance;
+        }
+        if (walls) {
+          expected[2] += repulsion.magnitude(x(i, 2)) - repulsion.magnitude(b.length[2] - x(i, 2));
+          wall += repulsion.magnitude(x(i, 2)) - repulsion.magnitude(b.length[2] - x(i, 2));
+        }
+        for (int k = 0; k < 3; ++k) {
+          CHECK(f(i, k) == Approx(expected[k]).margin(1e-10));
+          total[k] += f(i, k);
+        }
+      }
+      CHECK(total[0] == Approx(0).margin(1e-9));
+      CHECK(total[2] == Approx(wall).margin(1e-9));
+    }
+}
+
+TEST_CASE("The neighbour lists follow moving vertices", "[contact]") {
+  const double length[3] = {10, 10, 10};
+  const PeriodicBox box(Grid{10, 10, 10, 1}, false);
+  const auto s = scatter(500, length, 5, 9);
+  Contact kept(box, {0.1, 1.0, 0.4}, s.cell);
+  auto x = Kokkos::create_mirror_view(s.positions);
+  for (int step = 0; step < 30; ++step) {
+    Kokkos::deep_copy(s.forces, 0.0);
+    kept.add_forces(s.positions, s.forces);
+    VertexVectors fresh_forces("F", 500);
+    Contact fresh(box, {0.1, 1.0, 0.0}, s.cell);
+    fresh.add_forces(s.positions, fresh_forces);
+    const auto a = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, s.forces);
+    const auto b = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, fresh_forces);
+    double worst = 0;
+    for (int i = 0; i < 500; ++i)
+      for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(a(i, k) - b(i, k)));
+    REQUIRE(worst < 1e-9);
+    for (int i = 0; i < 500; ++i) {
+      x(i, 0) += i % 2 ? 0.04 : -0.04;
+      x(i, 1) += 0.05 * std::cos(2 * i - step);
+    }
+    Kokkos::deep_copy(s.positions, x);
+  }
+  CHECK(kept.rebuilds() > 2);
+  CHECK(kept.rebuilds() < 20);
+}
