@@ -18,6 +18,11 @@ foreach(option IN LISTS host_options)
   endif()
   list(APPEND CORPUSCLE_CODE_OPTIONS ${option})
 endforeach()
+add_compile_definitions(EIGEN_NO_CUDA EIGEN_NO_HIP)  # Eigen stays on the host
+if(Kokkos_ENABLE_CUDA)
+  list(APPEND CORPUSCLE_CODE_OPTIONS --expt-relaxed-constexpr)  # constexpr functions in kernels
+  add_compile_definitions(FMT_USE_CONSTEXPR=1 FMT_CONSTEVAL=)   # fmt 9 thinks too little, then too much, of nvcc
+endif()
 
 set(CORPUSCLE_WARNINGS -Wall -Wextra)
 if(CMAKE_CXX_COMPILER_ID MATCHES Clang)

@@ -7,6 +7,14 @@
 #include "core/grid.hpp"
 #include "core/types.hpp"
 
+// Inlines the whole body of a loop: one call that stays in it would keep it scalar. Not in debug builds, where checks and sanitizers would make
+// the compiler take minutes and gigabytes.
+#ifdef NDEBUG
+#define CORPUSCLE_FLATTEN [[gnu::flatten]]
+#else
+#define CORPUSCLE_FLATTEN
+#endif
+
 namespace corpuscle {
 
 /// Half-open ranges of node coordinates; may reach into the halo.
@@ -23,8 +31,7 @@ struct HostRows {
   Grid grid;
   LatticeBox box;
   Body body;
-  // "flatten" inlines the whole body: one call that stays in the loop would keep it scalar.
-  [[gnu::flatten]] void operator()(const int row) const {
+  CORPUSCLE_FLATTEN void operator()(const int row) const {
     const int y = box.y0 + row % (box.y1 - box.y0);
     const int z = box.z0 + row / (box.y1 - box.y0);
     const int begin = grid.index(box.x0, y, z);

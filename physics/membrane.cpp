@@ -53,7 +53,7 @@ class MembraneOf final : public Membrane {
     Kokkos::deep_copy(t.opposite, opposite);
 
     block_.law = law;
-    block_.bending_stiffness = 2 * moduli.bending_constant * moduli.bending;
+    bending_stiffness_ = 2 * moduli.bending_constant * moduli.bending;
     block_.global.area_modulus = moduli.global_area;
     block_.global.volume_modulus = moduli.volume;
     block_.needs_global = moduli.global_area > 0 || moduli.volume > 0;
@@ -88,6 +88,7 @@ class MembraneOf final : public Membrane {
         for (int k = 0; k < 9; ++k) reference(v, i, k) = static_cast<Real>(values[k]);
       }
     Kokkos::deep_copy(t.reference, reference);
+    block_.bending_stiffness = bending_stiffness_ * scale * scale;
     block_.global.area = mesh_area(reference_) * scale * scale;
     block_.global.volume = mesh_volume(reference_) * scale * scale * scale;
   }
@@ -116,6 +117,7 @@ class MembraneOf final : public Membrane {
   }
   Mesh reference_;
   OneRing ring_;
+  double bending_stiffness_ = 0;
   MembraneBlock<Real, Law, needs_bending> block_{};
 };
 

@@ -16,7 +16,8 @@ class Membrane {
   /// forces = -dE/dx (overwrites the rows of this type). positions, forces [V][3], lattice units.
   virtual void compute_forces(const VertexVectors& positions, const VertexVectors& forces) const = 0;
 
-  /// Takes the reference shape scaled by this factor as undeformed (growth during packing).
+  /// Takes the reference shape scaled by this factor as undeformed (growth during packing). The bending modulus scales with its square, so that
+  /// bending stays as strong against shear as at full size.
   virtual void set_reference_scale(double scale) = 0;
 
   virtual std::size_t bytes() const = 0;

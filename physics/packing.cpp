@@ -16,12 +16,19 @@ namespace {
 // Overdamped relaxation in lattice units. The moduli have nothing to do with the flow's: soft enough for a mobility of 0.2 (explicit steps are stable below about 1/4 of the
 // inverse stiffness), with a stiff volume, so that crowded cells give way in shape and not in volume.
 constexpr double mobility = 0.2;
-constexpr double shear = 0.3, dilation = 0.6, bending = 0.15, global_area = 0.5, volume = 2.0, repulsion = 0.15;
+constexpr double shear = 0.3, dilation = 0.6, bending = 1.0 / 405, repulsion = 0.1;
+struct Penalty {
+  double area, volume;  // moduli of the global constraints
+};
+constexpr Penalty growing{0.5, 2.0}, settling{2.0, 8.0};  // crowded cells may give way while they grow; then volumes and areas return
 constexpr double largest_move = 0.08;  // of a vertex in a round: a fraction of the contact range, so that surfaces cannot pass through each other
 constexpr double rigid_gain = 12;      // extra mobility of a cell's rigid motion: pushes from contacts move whole cells at once
 constexpr double sphere_fraction = 0.22;  // of the bounding spheres at the start: random placement succeeds quickly
 constexpr double growth_per_round = 0.06; // outward motion of the rim in a round
-constexpr double wanted_gap = 0.5;        // of the contact range, at the end
+constexpr double growth_gap = 0.5;        // of the range: cells grow only while no two come closer
+constexpr double final_gap = 0.45;        // of the range, at the end
+constexpr double reach = 1.5;             // range of the repulsion / contact range of the scene: keeps a vertex from slipping between the corners of a triangle
+constexpr int settling_rounds = 60;
 constexpr int most_rounds = 20000;
 
 /// Moves the vertices of one cell: x += mobility F, plus the rigid motion that the total force and torque ask for.
@@ -103,22 +110,17 @@ class Packer {
  public:
   Packer(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types)
       : problem_(problem), lattice_(lattice), types_(types), scale_(start_scale()), cells_(types, start_positions()),
-        contact_(PeriodicBox(Grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], 1}, problem.box.walls), {repulsion, range(), 0.5}, cells_.cell_of_vertex()) {
-    for (const auto& type : types) {
-      // Moduli per vertex are the same at every size; bending scales with the square of the radius.
-      const MembraneModuli soft{StrainLawKind::skalak, shear, dilation, bending, type.moduli.bending_constant > 0 ? type.moduli.bending_constant : 0.866, global_area, volume};
-      membranes_.push_back(make_membrane(type.reference, soft, Precision::single_precision, type.first_vertex, type.count));
-      membranes_.back()->set_reference_scale(scale_);
-      largest_radius_ = std::max(largest_radius_, bounding_radius(type.reference));
-    }
+        contact_(periodic_box(), {repulsion, range(), 0.5}, cells_.cell_of_vertex()) {
+    make_membranes(growing);
+    for (const auto& type : types) largest_radius_ = std::max(largest_radius_, bounding_radius(type.reference));
   }
 
   std::vector<double> run(const PackingProgress& progress) {
     double gap = contact_.smallest_gap(cells_.positions());
     int rounds = 0;
-    while (scale_ < 1 || gap < wanted_gap * range()) {
+    while (scale_ < 1 || gap < final_gap * range()) {
       if (++rounds > most_rounds) does_not_fit(lattice_, scale_ < 1 ? "growth stalled" : "cells still touch after relaxation");
-      if (scale_ < 1 && gap > (wanted_gap + 0.1) * range()) grow();
+      if (scale_ < 1 && gap > growth_gap * range()) grow();
       relax();
       gap = contact_.smallest_gap(cells_.positions());
       if (progress && rounds % 10 == 0 && !progress(scale_, gap, rounds)) throw InputError("The packing was stopped.");
@@ -129,7 +131,16 @@ class Packer {
   }
 
  private:
-  double range() const { return lattice_.contact_range > 0 ? lattice_.contact_range : 1.0; }
+  void make_membranes(const Penalty& penalty) {
+    membranes_.clear();
+    for (const auto& type : types_) {
+      const double bending_modulus = bending * shear * type.radius * type.radius;
+      const MembraneModuli soft{StrainLawKind::skalak, shear, dilation, bending_modulus, type.moduli.bending_constant, penalty.area, penalty.volume};
+      membranes_.push_back(make_membrane(type.reference, soft, Precision::single_precision, type.first_vertex, type.count));
+      membranes_.back()->set_reference_scale(scale_);
+    }
+  }
+  double range() const { return reach * (lattice_.contact_range > 0 ? lattice_.contact_range : 1.0); }
 
   double start_scale() const {
     double spheres = 0;
@@ -175,10 +186,13 @@ class Packer {
                            Relax{type.first_vertex, type.vertices(), largest_move * range(), cells_.positions(), cells_.forces()});
   }
 
-  /// Some more rounds without growth: the last grown layer relaxes, volumes return to their reference.
+  /// More rounds at full size with the scene's own contact range: the pressure that held surfaces apart during growth goes, volumes and areas return.
   void settle() {
-    for (int i = 0; i < 50; ++i) relax();
+    make_membranes(settling);
+    contact_ = Contact(periodic_box(), {repulsion, range() / reach, 0.5}, cells_.cell_of_vertex());
+    for (int i = 0; i < settling_rounds; ++i) relax();
   }
+  PeriodicBox periodic_box() const { return PeriodicBox(Grid{lattice_.nodes[0], lattice_.nodes[1], lattice_.nodes[2], 1}, problem_.box.walls); }
 
   const Problem& problem_;
   const LatticeParameters& lattice_;
