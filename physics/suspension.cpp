@@ -68,6 +68,7 @@ class SuspensionOf final : public Suspension {
   }
 
   void check() const override;
+  std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
   std::int64_t steps_done() const override { return fluid_.step(); }
   const Cells* cells() const override { return cells_.get(); }
   std::size_t bytes() const override {

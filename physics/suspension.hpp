@@ -23,6 +23,8 @@ class Suspension {
   /// @throws SimulationError when a vertex is not a number, too fast (|u| > 0.3) or outside the walls: names cell, step and likely cause.
   virtual void check() const = 0;
 
+  /// Momentum of the fluid, summed over the nodes; constant in a periodic box without body force.
+  virtual std::array<double, 3> fluid_momentum() const = 0;
   virtual std::int64_t steps_done() const = 0;
   virtual const Cells* cells() const = 0;  ///< null without cells
   /// Bytes allocated for fields and vertices.

@@ -78,18 +78,17 @@ TEST_CASE("A scene allocates only what it needs, and as much as predicted", "[su
 TEST_CASE("Momentum of a periodic suspension at rest stays zero to round-off", "[suspension]") {
   // Membrane and contact forces are internal: whatever the cells do, the fluid's total momentum does not change.
   const auto r = start("[box]\nsize = [4, 4, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 4\nprecision = 'double'\nshear_modulus = 0.02\n[run]\nsteps = 100\n[[cells]]\ncount = 6\n");
-  double moved = 0;
-  for (int i = 0; i < 100; ++i) r.suspension->step();
-  const auto snapshot = r.suspension->snapshot(true);
-  std::array<double, 3> total{};
-  for (std::size_t i = 0; i < snapshot.fluid_velocity.size(); ++i) {
-    total[i % 3] += snapshot.fluid_velocity[i];
-    moved = std::max(moved, std::abs(double(snapshot.fluid_velocity[i])));
+  double speed = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Sample sample = r.suspension->step_and_measure();
+    speed = std::max(speed, sample.velocity_max);
   }
-  for (int k = 0; k < 3; ++k) CHECK(std::abs(total[k]) < 4096 * 1e-7 * moved + 1e-12);  // velocities come out in single precision
+  CHECK(speed > 1e-5);  // the packed cells do move
+  // 4096 nodes, 100 steps and a force of 6 x 162 vertices per step, each rounded to 1e-16 of a momentum of the order of the speed.
+  for (const double component : r.suspension->fluid_momentum()) CHECK(std::abs(component) < 1e-16 * 4096 * 10 * speed + 1e-15);
 }
 
-TEST_CASE("An isotropic cell at rest stays as it is", "[suspension]") {
+TEST_CASE("A red cell at rest stays as it is", "[suspension]") {
   const auto r = start("[box]\nsize = [4, 4, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 4\nprecision = 'double'\n[run]\nsteps = 100\n[[cells]]\ncount = 1\n");
   const auto before = r.suspension->snapshot(false);
   for (int i = 0; i < 200; ++i) r.suspension->step();
