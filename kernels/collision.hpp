@@ -20,9 +20,10 @@ KOKKOS_FORCEINLINE_FUNCTION Macroscopic<Real> macroscopic(const Real (&g)[19], c
     constexpr int a = 2 * decltype(p)::value + 1;
     even += g[a] + g[a + 1];
     const Real odd = g[a] - g[a + 1];
-    if constexpr (D3Q19::cx[a] != 0) jx += Real(D3Q19::cx[a]) * odd;
-    if constexpr (D3Q19::cy[a] != 0) jy += Real(D3Q19::cy[a]) * odd;
-    if constexpr (D3Q19::cz[a] != 0) jz += Real(D3Q19::cz[a]) * odd;
+    constexpr int cx = D3Q19::cx[a], cy = D3Q19::cy[a], cz = D3Q19::cz[a];
+    if constexpr (cx != 0) jx += Real(cx) * odd;
+    if constexpr (cy != 0) jy += Real(cy) * odd;
+    if constexpr (cz != 0) jz += Real(cz) * odd;
   });
   const Real inverse = Real(1) / (Real(1) + even);
   return {even, {jx * inverse, jy * inverse, jz * inverse}};
@@ -32,9 +33,10 @@ KOKKOS_FORCEINLINE_FUNCTION Macroscopic<Real> macroscopic(const Real (&g)[19], c
 template <int q, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Real along(const Real x, const Real y, const Real z) {
   Real sum = 0;
-  if constexpr (D3Q19::cx[q] != 0) sum += Real(D3Q19::cx[q]) * x;
-  if constexpr (D3Q19::cy[q] != 0) sum += Real(D3Q19::cy[q]) * y;
-  if constexpr (D3Q19::cz[q] != 0) sum += Real(D3Q19::cz[q]) * z;
+  constexpr int cx = D3Q19::cx[q], cy = D3Q19::cy[q], cz = D3Q19::cz[q];
+  if constexpr (cx != 0) sum += Real(cx) * x;
+  if constexpr (cy != 0) sum += Real(cy) * y;
+  if constexpr (cz != 0) sum += Real(cz) * z;
   return sum;
 }
 
@@ -91,10 +93,9 @@ KOKKOS_FORCEINLINE_FUNCTION void equilibrium_with_shear(Real (&g)[19], const Mac
   const Real speed_term = m.density_shift - Real(1.5) * rho * (m.u[0] * m.u[0] + m.u[1] * m.u[1] + m.u[2] * m.u[2]);
   unroll<D3Q19::directions>([&](auto q) {
     constexpr int i = decltype(q)::value;
-    constexpr Real w = Real(D3Q19::weight(i));
+    constexpr Real w = Real(D3Q19::weight(i)), cx_cz = Real(D3Q19::cx[i] * D3Q19::cz[i]);
     const Real cu = along<i>(m.u[0], m.u[1], m.u[2]);
-    g[i] = w * (speed_term + rho * (Real(3) * cu + Real(4.5) * cu * cu) -
-                Real(3) * relaxation_time * rho * Real(D3Q19::cx[i] * D3Q19::cz[i]) * dux_dz);
+    g[i] = w * (speed_term + rho * (Real(3) * cu + Real(4.5) * cu * cu) - Real(3) * relaxation_time * rho * cx_cz * dux_dz);
   });
 }
 

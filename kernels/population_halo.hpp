@@ -15,7 +15,8 @@ struct ExchangePopulations {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int halo, const int owner, const int side) const {
     unroll<D3Q19::pairs>([&](auto p) {
       constexpr int a = 2 * decltype(p)::value + 1;
-      const int c = dimension == 0 ? D3Q19::cx[a] : dimension == 1 ? D3Q19::cy[a] : D3Q19::cz[a];
+      constexpr int cx = D3Q19::cx[a], cy = D3Q19::cy[a], cz = D3Q19::cz[a];
+      const int c = dimension == 0 ? cx : dimension == 1 ? cy : cz;
       if (c == side) {
         constexpr int slot = StreamingSlots<Parity>::neighbour_slot(decltype(p)::value);
         if (to_halo)
@@ -67,7 +68,8 @@ struct WallMomentum {
         const int at = Upper ? node + offsets.along[pair] : node;
         constexpr int out = Upper ? StreamingSlots<Parity>::neighbour_slot(pair) : StreamingSlots<Parity>::local_slot(pair);
         constexpr int in = Upper ? StreamingSlots<1 - Parity>::neighbour_slot(pair) : StreamingSlots<1 - Parity>::local_slot(pair);
-        sum += (Upper ? 1 : -1) * D3Q19::cx[a] * (double(f(out, at)) + double(f(in, at)));
+        constexpr int sign = (Upper ? 1 : -1) * D3Q19::cx[a];
+        sum += sign * (double(f(out, at)) + double(f(in, at)));
       }
     });
     return sum;

@@ -44,7 +44,7 @@ struct FindNeighbours {
             const int u = bin_order(i);
             if (u == v) continue;
             const PairVector pair(box, positions, v, u);
-            if (pair.squared() >= reach * reach) continue;
+            if (!(pair.squared() < reach * reach)) continue;  // not a number: no neighbour (the guards report it)
             if (cell_of_vertex(u) == cell_of_vertex(v) && pair.same_image) continue;
             if (write) list(count_or_begin(v) + found) = u;
             ++found;
@@ -81,7 +81,7 @@ struct ContactForce {
     for (int i = rows.begin(v); i < rows.begin(v + 1); ++i) {
       const PairVector pair(box, positions, v, rows.list(i));
       const double squared = pair.squared();
-      if (squared >= repulsion.range * repulsion.range || squared == 0) continue;
+      if (!(squared < repulsion.range * repulsion.range) || squared == 0) continue;
       const double distance = Kokkos::sqrt(squared);
       const double scale = repulsion.magnitude(distance) / distance;
       for (int k = 0; k < 3; ++k) f[k] += scale * pair.d[k];
@@ -90,6 +90,29 @@ struct ContactForce {
     for (int k = 0; k < 3; ++k) forces(v, k) += f[k];
   }
 };
+
+// Free functions, because CUDA takes no lambda inside a private member.
+double largest_move_squared(const VertexVectors& x, const VertexVectors& x0) {
+  double moved = 0;
+  Kokkos::parallel_reduce("contact_moved", Kokkos::RangePolicy<ExecSpace>(0, x.extent(0)), KOKKOS_LAMBDA(const int v, double& largest) {
+    double squared = 0;
+    for (int k = 0; k < 3; ++k) squared += (x(v, k) - x0(v, k)) * (x(v, k) - x0(v, k));
+    largest = squared > largest ? squared : largest;
+  }, Kokkos::Max<double>(moved));
+  return moved;
+}
+
+/// In place: the counts in begin(0) ... begin(n - 1) become offsets, begin(n) the total, which is also returned.
+int counts_to_offsets(const Array1<int>& begin) {
+  const int rows = int(begin.extent(0)) - 1;
+  int total = 0;
+  Kokkos::parallel_scan("contact_scan", Kokkos::RangePolicy<ExecSpace>(0, rows + 1), KOKKOS_LAMBDA(const int v, int& sum, const bool final) {
+    const int count = v < rows ? begin(v) : 0;
+    if (final) begin(v) = sum;
+    sum += count;
+  }, total);
+  return total;
+}
 
 }  // namespace
 
@@ -106,13 +129,7 @@ Contact::Contact(const PeriodicBox& box, const ContactParameters& parameters, co
 void Contact::update_lists(const VertexVectors& positions) {
   const int vertices = int(positions.extent(0));
   if (rebuilds_ > 0) {
-    double moved = 0;
-    const auto x = positions, x0 = built_at_;
-    Kokkos::parallel_reduce("contact_moved", Kokkos::RangePolicy<ExecSpace>(0, vertices), KOKKOS_LAMBDA(const int v, double& largest) {
-      double squared = 0;
-      for (int k = 0; k < 3; ++k) squared += (x(v, k) - x0(v, k)) * (x(v, k) - x0(v, k));
-      largest = squared > largest ? squared : largest;
-    }, Kokkos::Max<double>(moved));
+    const double moved = largest_move_squared(positions, built_at_);
     if (4 * moved < parameters_.skin * parameters_.skin) return;
   }
   ++rebuilds_;
@@ -120,13 +137,7 @@ void Contact::update_lists(const VertexVectors& positions) {
   bins_.build(keys_, vertices, grid_.bins());
   FindNeighbours find{box_, grid_, positions, cell_of_vertex_, bins_.begin(), bins_.order(), rows_.begin, rows_.list, parameters_.range + parameters_.skin, false};
   Kokkos::parallel_for("contact_count", Kokkos::RangePolicy<ExecSpace>(0, vertices), find);
-  int total = 0;
-  const auto begin = rows_.begin;
-  Kokkos::parallel_scan("contact_scan", Kokkos::RangePolicy<ExecSpace>(0, vertices + 1), KOKKOS_LAMBDA(const int v, int& sum, const bool final) {
-    const int count = v < vertices ? begin(v) : 0;
-    if (final) begin(v) = sum;
-    sum += count;
-  }, total);
+  const int total = counts_to_offsets(rows_.begin);
   if (int(rows_.list.extent(0)) < total)
     rows_.list = Array1<int>(Kokkos::view_alloc(Kokkos::WithoutInitializing, "contact_list"), total + total / 4);
   find.list = rows_.list;

@@ -13,6 +13,8 @@ enum class FlowKind { shear, poiseuille, rest };
 enum class ShapeKind { red_cell, sphere, spheroid, file };
 enum class StrainLawKind { skalak, neo_hookean };
 enum class CollisionKind { bgk, trt };
+/// How vertices move with the interpolated velocity (physics/cells.hpp).
+enum class VertexUpdate { averaged, euler };
 enum class Precision { single_precision, double_precision };
 
 /// [box] Lengths in cell radii; z is the gradient direction and is bounded by walls when `walls` is true, x is the flow direction.
@@ -73,6 +75,7 @@ struct AccuracySpec {
   double relaxation_time = 1.0;              ///< tau; viscosity = (tau - 1/2)/3
   Precision precision = Precision::single_precision;            ///< populations, force and velocity fields
   Precision membrane_precision = Precision::double_precision;   ///< membrane forces (positions are always double)
+  VertexUpdate vertex_update = VertexUpdate::averaged;
   double mach_max = 0.1;                     ///< wall (or maximum) velocity / speed of sound must not exceed this
   double shell_thickness = 0.30;             ///< lattice units, for the effective volume fraction
   std::optional<double> shear_modulus;       ///< kappa_S in lattice units; default: the largest stable one

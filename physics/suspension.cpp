@@ -96,7 +96,7 @@ class SuspensionOf final : public Suspension {
       fluid_.gather_velocity();
       coupling_->interpolate(cells_->positions(), cells_->velocities(), fluid_.velocity());
       if (sample) sampler_->measure_shape(*cells_);
-      cells_->advance();
+      cells_->advance(problem_.accuracy.vertex_update);
     }
     if (sample) finish(*sample);
   }
@@ -197,6 +197,7 @@ std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lat
   std::size_t vertices = 0;
   for (const auto& type : lattice.cells) vertices += std::size_t(type.count) * type.vertices;
   bytes += vertices * (3 * 3 * 8 + 4);      // positions, velocities, forces, cell number
+  if (problem.accuracy.vertex_update == VertexUpdate::averaged) bytes += vertices * 3 * 8;
   if (runs_on_host) bytes += vertices * 8;  // slab keys and order of spreading
   if (cells && problem.contact.enabled) {
     const double edge = lattice.contact_range + ContactParameters{}.skin;

@@ -16,14 +16,26 @@ namespace {
 
 const double speed_of_sound = 1 / std::sqrt(3.0);
 constexpr double tolerance = 1e-8;         // limits are met to rounding: 1.2/6 isn't 0.2 in binary
-constexpr double stable_shear = 1.2;       // kappa_S <= 1.2 eta_0 (MODEL.md, Coupling)
-constexpr double stable_dilation = 6;      // kappa_alpha <= 6 eta_0; 3 eta_0 is the paper's value
 constexpr double stiffness_at_rest = 0.25; // kappa_S / eta_0 where no flow sets it: soft, and well inside the limit
 constexpr double penalty = 6;              // kappa_A and kappa_V / eta_0: 1 at tau = 1 (MODEL.md, typical values)
 constexpr double packable = 0.78;          // largest phi that deformable cells reach by growing (MODEL.md: 0.75 is needed)
 constexpr double packable_effective = 0.92;
 constexpr double most_nodes = 2e9;         // 32-bit node index
 constexpr double smallest_box = 4;         // nodes; below it the kernels' halo is wider than the box
+
+/// Largest kappa_S and kappa_alpha over eta_0 that stay stable in a dense suspension (phi_eff = 0.45, perf/stability_dense.sh; 1.2 is the estimate of
+/// MODEL.md, Coupling). With the Euler update the kernels that see staggered momenta (2 and 3 points) allow much less.
+struct StiffnessLimits {
+  double shear, dilation;
+};
+StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
+  if (accuracy.vertex_update == VertexUpdate::averaged) return {1.2, 6};
+  switch (accuracy.delta_kernel) {
+    case 2: return {0.1, 0.1};
+    case 3: return {0.6, 0.6};
+    default: return {1.2, 4};
+  }
+}
 
 /// Rounded to five digits, never beyond `value`: a limit that a message offers must itself be accepted.
 std::string at_most(double value) {
@@ -191,8 +203,8 @@ class ShearRateChoice {
     } else if (cells) {
       if (!(ca_ > 0)) throw InputError("flow.capillary_number is missing: cells in a flow need it, a number > 0 such as 0.081 (or flow.capillary_number_G)");
       const double rate_per_modulus = ca_ / (eta * l_.radius);
-      add("membrane stability", rate_per_modulus * largest_stable_shear_modulus(eta) / stiffest_);
-      if (dilation_ > 0) add("area dilation stability", rate_per_modulus * stable_dilation * eta / dilation_);
+      add("membrane stability", rate_per_modulus * limits_.shear * eta / stiffest_);
+      if (dilation_ > 0) add("area dilation stability", rate_per_modulus * limits_.dilation * eta / dilation_);
       if (kappa > 0) fixed("shear_modulus", kappa, rate_per_modulus * kappa);
     }
     if (p_.accuracy.shear_rate) fixed("shear_rate", *p_.accuracy.shear_rate, *p_.accuracy.shear_rate);
@@ -211,12 +223,12 @@ class ShearRateChoice {
   void add(const char* name, double rate) { l_.limits.push_back({name, rate}); }
 
   double largest_modulus() const {
-    const double shear = largest_stable_shear_modulus(l_.viscosity) / stiffest_;
-    return dilation_ > 0 ? std::min(shear, stable_dilation * l_.viscosity / dilation_) : shear;
+    const double shear = limits_.shear * l_.viscosity / stiffest_;
+    return dilation_ > 0 ? std::min(shear, limits_.dilation * l_.viscosity / dilation_) : shear;
   }
 
   void check_modulus(double kappa) const {
-    const double shear = largest_stable_shear_modulus(l_.viscosity) / stiffest_;
+    const double shear = limits_.shear * l_.viscosity / stiffest_;
     if (kappa > shear * (1 + tolerance)) {
       throw InputError(fmt::format("accuracy.shear_modulus = {} is unstable with accuracy.relaxation_time = {}{}: it must be <= {}", kappa, l_.relaxation_time,
                                    stiffest_ != 1 ? fmt::format(" and relative_stiffness = {}", stiffest_) : "", at_most(shear)));
@@ -224,7 +236,7 @@ class ShearRateChoice {
     for (std::size_t i = 0; i < p_.cells.size(); ++i) {
       const CellSpec& spec = p_.cells[i];
       if (spec.membrane.law != StrainLawKind::skalak) continue;
-      const double dilation = stable_dilation * l_.viscosity / (kappa * spec.relative_stiffness);
+      const double dilation = limits_.dilation * l_.viscosity / (kappa * spec.relative_stiffness);
       if (spec.membrane.area_dilation > dilation * (1 + tolerance)) {
         throw InputError(fmt::format("cells.{}.membrane.area_dilation = {} is unstable with accuracy.shear_modulus = {}: it must be <= {}; or lower the modulus", i,
                                      spec.membrane.area_dilation, kappa, at_most(dilation)));
@@ -252,6 +264,7 @@ class ShearRateChoice {
 
   const Problem& p_;
   LatticeParameters& l_;
+  StiffnessLimits limits_ = stiffness_limits(p_.accuracy);
   double ca_ = 0;
   double stiffest_ = 0;  // largest relative stiffness
   double dilation_ = 0;  // largest kappa_alpha / kappa_S of the scene
@@ -308,7 +321,7 @@ void set_duration(const Problem& problem, LatticeParameters& lattice) {
 
 }  // namespace
 
-double largest_stable_shear_modulus(double viscosity) { return stable_shear * viscosity; }
+double largest_stable_shear_modulus(const AccuracySpec& accuracy, double viscosity) { return stiffness_limits(accuracy).shear * viscosity; }
 
 LatticeParameters to_lattice(const Problem& problem) {
   LatticeParameters lattice;

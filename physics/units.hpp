@@ -68,7 +68,7 @@ struct LatticeParameters {
 /// @throws InputError when a number can't be met (names the key, the value, the allowed range and what to do).
 LatticeParameters to_lattice(const Problem& problem);
 
-/// Explicit coupling is stable for kappa_S <= this (estimate 1.2 eta_0, MODEL.md, Coupling).
-double largest_stable_shear_modulus(double viscosity);
+/// Explicit coupling is stable for kappa_S <= this with the scene's kernel and vertex update.
+double largest_stable_shear_modulus(const AccuracySpec& accuracy, double viscosity);
 
 }  // namespace corpuscle
