@@ -53,7 +53,7 @@ const Key table[] = {
     {"cells.*.membrane.bending_constant", CORPUSCLE_FIELD(C.membrane.bending_constant), positive(10), "", "", "", "p in E_B = p κ_B Σ (θ − θ₀)²"},
     {"cells.*.membrane.global_area", CORPUSCLE_FIELD(C.membrane.global_area), between(0, 1e8), "", "κ_S", "6 η₀ in lattice units; 0 for spheres and neo-Hookean membranes",
      "κ_A of the whole surface; 0: no force"},
-    {"cells.*.membrane.volume", CORPUSCLE_FIELD(C.membrane.volume), between(0, 1e8), "", "κ_S / r", "6 η₀ in lattice units", "κ_V of the volume; 0: no force"},
+    {"cells.*.membrane.volume", CORPUSCLE_FIELD(C.membrane.volume), between(0, 1e8), "", "κ_S / r", "c_s V₀/A in lattice units", "κ_V of the volume; 0: no force"},
 
     {"contact.enabled", CORPUSCLE_FIELD(P.contact.enabled), any, "", "", "", "Repulsion between vertices of different cells, and vertices and walls"},
     {"contact.strength", CORPUSCLE_FIELD(P.contact.strength), positive(100), "", "κ_S", "", "κ_int in the force κ_int (d⁻² − d₀⁻²), d in lattice units"},

@@ -38,7 +38,7 @@ struct MembraneSpec {
   double bending = 1.0 / 405.0;              ///< kappa_B / (kappa_S r^2); 0: no bending
   double bending_constant = 0.8660254037844386;  ///< p in E_B = p kappa_B sum (theta - theta_0)^2
   std::optional<double> global_area;         ///< kappa_A / kappa_S; absent: 6 eta_0 (1 at tau = 1), but 0 for spheres and neo-Hookean
-  std::optional<double> volume;              ///< kappa_V r / kappa_S; absent: 6 eta_0; 0: no volume force
+  std::optional<double> volume;              ///< kappa_V r / kappa_S; absent: c_s V_0/A in lattice units; 0: no volume force
 };
 
 /// [[cells]] one cell type.

@@ -17,7 +17,10 @@ namespace {
 const double speed_of_sound = 1 / std::sqrt(3.0);
 constexpr double tolerance = 1e-8;         // limits are met to rounding: 1.2/6 isn't 0.2 in binary
 constexpr double stiffness_at_rest = 0.25; // kappa_S / eta_0 where no flow sets it: soft, and well inside the limit
-constexpr double penalty = 6;              // kappa_A and kappa_V / eta_0: 1 at tau = 1 (MODEL.md, typical values)
+constexpr double penalty = 6;              // kappa_A / eta_0: 1 at tau = 1 (MODEL.md, typical values)
+// A cell that breathes pushes sound waves: the pressure of a normal displacement d is kappa_V A d/V_0, the fluid answers with the velocity p/(2 rho c_s), so a step is stable
+// only for kappa_V A/(2 c_s V_0) well below 1. Measured at phi_eff = 0.45, averaged update: 0.8 is stable, 1.1 is not.
+constexpr double stable_volume = 0.8, default_volume = 0.5;
 constexpr double packable = 0.78;          // largest phi that deformable cells reach by growing (MODEL.md: 0.75 is needed)
 constexpr double packable_effective = 0.92;
 constexpr double most_nodes = 2e9;         // 32-bit node index
@@ -36,6 +39,9 @@ StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
     default: return {1.2, 4};
   }
 }
+
+/// kappa_V for which kappa_V A/(2 c_s V_0) has the given value.
+double volume_modulus(const CellTypeLattice& cell, double response) { return response * 2 * speed_of_sound * cell.volume / cell.area; }
 
 /// Rounded to five digits, never beyond `value`: a limit that a message offers must itself be accepted.
 std::string at_most(double value) {
@@ -184,6 +190,9 @@ class ShearRateChoice {
       stiffest_ = std::max(stiffest_, spec.relative_stiffness);
       if (spec.membrane.law == StrainLawKind::skalak) dilation_ = std::max(dilation_, spec.relative_stiffness * spec.membrane.area_dilation);
     }
+    for (std::size_t i = 0; i < p_.cells.size(); ++i) {
+      if (p_.cells[i].membrane.volume.value_or(0) > 0) modulus_by_volume_ = std::min(modulus_by_volume_, largest_modulus_by_volume(i));
+    }
   }
 
   /// Returns kappa_S of the scene; 0 without cells.
@@ -205,6 +214,7 @@ class ShearRateChoice {
       const double rate_per_modulus = ca_ / (eta * l_.radius);
       add("membrane stability", rate_per_modulus * limits_.shear * eta / stiffest_);
       if (dilation_ > 0) add("area dilation stability", rate_per_modulus * limits_.dilation * eta / dilation_);
+      if (std::isfinite(modulus_by_volume_)) add("volume stability", rate_per_modulus * modulus_by_volume_);
       if (kappa > 0) fixed("shear_modulus", kappa, rate_per_modulus * kappa);
     }
     if (p_.accuracy.shear_rate) fixed("shear_rate", *p_.accuracy.shear_rate, *p_.accuracy.shear_rate);
@@ -223,8 +233,14 @@ class ShearRateChoice {
   void add(const char* name, double rate) { l_.limits.push_back({name, rate}); }
 
   double largest_modulus() const {
-    const double shear = limits_.shear * l_.viscosity / stiffest_;
+    const double shear = std::min(limits_.shear * l_.viscosity / stiffest_, modulus_by_volume_);
     return dilation_ > 0 ? std::min(shear, limits_.dilation * l_.viscosity / dilation_) : shear;
+  }
+
+  /// Largest kappa_S of the scene for which the volume force that type i asks for is stable.
+  double largest_modulus_by_volume(std::size_t i) const {
+    const CellTypeLattice& cell = l_.cells[i];
+    return volume_modulus(cell, stable_volume) * cell.radius / (*p_.cells[i].membrane.volume * p_.cells[i].relative_stiffness);
   }
 
   void check_modulus(double kappa) const {
@@ -235,6 +251,10 @@ class ShearRateChoice {
     }
     for (std::size_t i = 0; i < p_.cells.size(); ++i) {
       const CellSpec& spec = p_.cells[i];
+      if (spec.membrane.volume.value_or(0) > 0 && kappa > largest_modulus_by_volume(i) * (1 + tolerance)) {
+        throw InputError(fmt::format("cells.{}.membrane.volume = {} is unstable with accuracy.shear_modulus = {}: it must be <= {}; or leave it out for a stable default", i,
+                                     *spec.membrane.volume, kappa, at_most(*spec.membrane.volume * largest_modulus_by_volume(i) / kappa)));
+      }
       if (spec.membrane.law != StrainLawKind::skalak) continue;
       const double dilation = limits_.dilation * l_.viscosity / (kappa * spec.relative_stiffness);
       if (spec.membrane.area_dilation > dilation * (1 + tolerance)) {
@@ -268,6 +288,7 @@ class ShearRateChoice {
   double ca_ = 0;
   double stiffest_ = 0;  // largest relative stiffness
   double dilation_ = 0;  // largest kappa_alpha / kappa_S of the scene
+  double modulus_by_volume_ = std::numeric_limits<double>::infinity();  // kappa_S that the stiffest given volume force allows
   double velocity_per_rate_ = 0;
   std::string fixed_by_;  // key of [accuracy] that fixes the rate
 };
@@ -285,7 +306,7 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
     m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? penalty * lattice.viscosity : 0;
-    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : penalty * lattice.viscosity;
+    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, default_volume);
   }
   if (problem.contact.enabled && kappa > 0) {
     lattice.contact_strength = problem.contact.strength * kappa;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace corpuscle::statistics {
 
@@ -22,17 +21,16 @@ EllipsoidFit fit_ellipsoid(const std::array<double, 6>& gyration) {
     fit.symmetry_axis[static_cast<std::size_t>(i)] = axes(i, 0);
   }
 
-  // The axis closest to the vorticity direction y is left out; the others span the cell's section in the shear plane.
-  int vorticity = 0;
-  axes.row(1).cwiseAbs().maxCoeff(&vorticity);
-  int longer = vorticity == 2 ? 1 : 2;
-  const int shorter = vorticity == 0 ? 1 : 0;
-  const double length = fit.semi_axes[static_cast<std::size_t>(2 - longer)];
-  const double breadth = fit.semi_axes[static_cast<std::size_t>(2 - shorter)];
+  // The section with the shear plane is the ellipse of the Schur complement of yy: it changes continuously as the cell turns out of the plane.
+  const double inverse = yy > 0 ? 1 / yy : 0;
+  Eigen::Matrix2d section;
+  section << xx - xy * xy * inverse, xz - xy * yz * inverse, xz - xy * yz * inverse, zz - yz * yz * inverse;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> plane(section);
+  const double length = std::sqrt(std::max(plane.eigenvalues()[1], 0.0)), breadth = std::sqrt(std::max(plane.eigenvalues()[0], 0.0));
   fit.deformation = length + breadth > 0 ? (length - breadth) / (length + breadth) : 0;
 
   // An axis has no sense of direction: bring the angle into (-pi/2, pi/2].
-  double angle = std::atan2(axes(2, longer), axes(0, longer));
+  double angle = std::atan2(plane.eigenvectors()(1, 1), plane.eigenvectors()(0, 1));
   if (angle > std::numbers::pi / 2) angle -= std::numbers::pi;
   if (angle <= -std::numbers::pi / 2) angle += std::numbers::pi;
   fit.inclination = angle;

@@ -7,8 +7,8 @@ namespace corpuscle::statistics {
 /// Ellipsoid of equal second moments (semi-axis = sqrt(5 eigenvalue), Ramanujan & Pozrikidis 1998).
 struct EllipsoidFit {
   std::array<double, 3> semi_axes{};    ///< descending
-  double deformation = 0;               ///< D = (L-B)/(L+B) of the two axes that lie (most nearly) in the shear plane x-z
-  double inclination = 0;               ///< angle of the longer of these against +x, rad, in (-pi/2, pi/2]
+  double deformation = 0;               ///< D = (L-B)/(L+B) of the ellipsoid's section with the shear plane x-z
+  double inclination = 0;               ///< angle of the section's longer axis against +x, rad, in (-pi/2, pi/2]
   std::array<double, 3> symmetry_axis{};///< unit eigenvector of the smallest moment: the disc's normal for red cells
 };
 /// `gyration`: xx yy zz xy xz yz of CellSample.

@@ -42,6 +42,19 @@ TEST_CASE("fit_ellipsoid: axes, deformation and inclination of a tilted ellipsoi
   CHECK(fit_ellipsoid(gyration_of({2, 5, 3}, in_shear_plane(0.2))).deformation == Approx(1.0 / 5));  // the longest axis is the vorticity's
 }
 
+TEST_CASE("fit_ellipsoid: D is the section's and continuous when the cell turns out of the shear plane", "[statistics]") {
+  // Semi-axes 4 (turned by t from x towards y), 1 along z, 2: the section's length is (cos^2/16 + sin^2/4)^-1/2.
+  double previous = 3.0 / 5;
+  for (double t = 0; t < 3.2; t += 0.01) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(t, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const double length = 1 / std::sqrt(std::pow(std::cos(t) / 4, 2) + std::pow(std::sin(t) / 2, 2));
+    const double deformation = fit_ellipsoid(gyration_of({4, 2, 1}, turn)).deformation;
+    CHECK(deformation == Approx((length - 1) / (length + 1)));
+    CHECK(std::abs(deformation - previous) < 0.01);
+    previous = deformation;
+  }
+}
+
 TEST_CASE("fit_ellipsoid: degenerate bodies", "[statistics]") {
   CHECK(fit_ellipsoid(gyration_of({4, 4, 4}, in_shear_plane(0.4))).deformation == Approx(0).margin(1e-12));
   // A disc whose normal is tilted in the shear plane: D of its diameter and its thickness, its inclination along the diameter.
