@@ -43,6 +43,11 @@ void check_output(const fs::path& directory, bool overwrite) {
       throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); choose another directory, or add --overwrite to replace them.", directory.string(), name));
 }
 
+void remove_outputs(const fs::path& directory) {
+  std::error_code error;
+  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "packing.h5", "scene.toml"}) fs::remove(directory / name, error);
+}
+
 /// Packs with a line that tells how far it is: redrawn on a terminal, every tenth in a log.
 std::vector<double> pack(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, bool terminal) {
   int shown = -1;
@@ -122,15 +127,24 @@ int run(const RunOptions& options) {
   if (!packed_before) packing.positions = pack(problem, lattice, types, terminal);
 
   std::error_code error;
+  const bool existed = fs::exists(directory, error);
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
-  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "packing.h5", "scene.toml"}) fs::remove(directory / name, error);
-  std::ofstream(directory / "scene.toml") << to_toml(problem);
-  if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
-
+  remove_outputs(directory);
   const auto suspension = make_suspension(problem, lattice, types, packing.positions);
+  std::optional<Outputs> created;
+  try {
+    std::ofstream scene(directory / "scene.toml");
+    if (!(scene << to_toml(problem) << std::flush)) throw OutputError((directory / "scene.toml").string() + " can't be written (is the disk full?)");
+    if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
+    created.emplace(directory, problem, lattice, types);
+  } catch (const OutputError& failed) {  // nothing has been computed: leave nothing behind
+    remove_outputs(directory);
+    if (!existed) fs::remove(directory, error);
+    throw InputError(fmt::format("--output {}: {}; make room or choose another place.", directory.string(), failed.what()));
+  }
+  Outputs& outputs = *created;
   packing.positions = {};
-  Outputs outputs(directory, problem, lattice, types);
   SeriesSummary series(lattice, problem.run.discard);
   ProgressOptions look;
   look.terminal = terminal;
@@ -143,11 +157,13 @@ int run(const RunOptions& options) {
   const Kokkos::Timer timer;
   ProgressState state;
   std::string stopped_by = "end", failure;
+  int code = exit_code::success;
   std::int64_t step = 0;
   try {
     for (; step < lattice.steps; ++step) {
       if (interrupted) {
         stopped_by = "interrupt";
+        code = exit_code::interrupted;
         break;
       }
       if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) outputs.snapshot(*suspension);
@@ -172,6 +188,11 @@ int run(const RunOptions& options) {
   } catch (const SimulationError& broken) {
     stopped_by = "guard";
     failure = broken.what();
+    code = exit_code::broken_run;
+  } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
+    stopped_by = "output error";
+    failure = failed.what();
+    code = exit_code::failure;
   }
   Kokkos::fence();
   const double seconds = timer.seconds();
@@ -179,7 +200,6 @@ int run(const RunOptions& options) {
   state.strain = lattice.shear_rate * double(step);
   progress.update(state);
   progress.finish(stopped_by);
-  outputs.flush();
 
   Summary summary = series.result();
   summary.steps = step;
@@ -189,10 +209,16 @@ int run(const RunOptions& options) {
   summary.threads = Kokkos::DefaultExecutionSpace().concurrency();
   summary.bytes_peak = peak_memory_bytes();
   summary.stopped_by = stopped_by;
-  write_summary(directory / "summary.json", summary);
-  std::cout << result_line(summary, directory) << "\n";
-  if (!failure.empty()) throw SimulationError(failure + " What was computed until then is in " + directory.string() + ".");
-  return stopped_by == "interrupt" ? exit_code::interrupted : exit_code::success;
+  try {
+    outputs.flush();
+    write_summary(directory / "summary.json", summary);
+  } catch (const OutputError& failed) {
+    if (failure.empty()) failure = failed.what();
+    if (code == exit_code::success) code = exit_code::failure;
+  }
+  std::cout << result_line(summary, directory) << std::endl;
+  if (!failure.empty()) std::cerr << "error: " << failure << " What was written until then is kept in " << directory.string() << "." << std::endl;
+  return code;
 }
 
 }  // namespace corpuscle::app

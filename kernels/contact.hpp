@@ -1,6 +1,6 @@
 // Short-range repulsion between vertices of different cells, and vertices and walls (MODEL.md, Membrane).
 #pragma once
-#include <Kokkos_Core.hpp>
+#include "kernels/stencil.hpp"
 
 namespace corpuscle {
 
@@ -17,5 +17,27 @@ struct Repulsion {
     return strength * (1 / (d * d) - 1 / (range * range));
   }
 };
+
+/// Vector from vertex j to vertex i by the nearest image; `same_image` when no period was added.
+struct PairVector {
+  double d[3];
+  bool same_image;
+  KOKKOS_FORCEINLINE_FUNCTION PairVector(const PeriodicBox& box, const VertexVectors& x, const int i, const int j) : same_image(true) {
+    for (int k = 0; k < 3; ++k) {
+      const double raw = x(i, k) - x(j, k);
+      d[k] = box.nearest(raw, k);
+      same_image = same_image && d[k] == raw;
+    }
+  }
+  KOKKOS_FORCEINLINE_FUNCTION double squared() const { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; }
+};
+
+/// Force on vertex i of a pair divided by the distance: F_i = scale d. Zero out of range, for coinciding vertices and where a position is not a number.
+KOKKOS_FORCEINLINE_FUNCTION double pair_force_scale(const Repulsion& repulsion, const PairVector& pair) {
+  const double squared = pair.squared();
+  if (!(squared < repulsion.range * repulsion.range) || squared == 0) return 0;
+  const double distance = Kokkos::sqrt(squared);
+  return repulsion.magnitude(distance) / distance;
+}
 
 }  // namespace corpuscle

@@ -35,17 +35,10 @@ struct ContactStress {
     double s[9] = {};
     for (int v = base; v < base + vertices; ++v) {
       for (int n = rows.begin(v); n < rows.begin(v + 1); ++n) {
-        const int u = rows.list(n);
-        double d[3], square = 0;
-        for (int k = 0; k < 3; ++k) {
-          d[k] = box.nearest(x(v, k) - x(u, k), k);
-          square += d[k] * d[k];
-        }
-        if (square >= repulsion.range * repulsion.range || square == 0) continue;
-        const double distance = Kokkos::sqrt(square);
-        const double scale = 0.5 * repulsion.magnitude(distance) / distance;
+        const PairVector pair(box, x, v, rows.list(n));
+        const double scale = 0.5 * pair_force_scale(repulsion, pair);
         for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b) s[3 * a + b] -= scale * d[a] * d[b];
+          for (int b = 0; b < 3; ++b) s[3 * a + b] -= scale * pair.d[a] * pair.d[b];
       }
       if (box.walls) {
         const double above = x(v, 2), below = box.length[2] - x(v, 2);

@@ -3,20 +3,6 @@
 namespace corpuscle {
 namespace {
 
-/// Vector from vertex j to vertex i by the nearest image; `same_image` when no period was added.
-struct PairVector {
-  double d[3];
-  bool same_image;
-  KOKKOS_FORCEINLINE_FUNCTION PairVector(const PeriodicBox& box, const VertexVectors& x, const int i, const int j) : same_image(true) {
-    for (int k = 0; k < 3; ++k) {
-      const double raw = x(i, k) - x(j, k);
-      d[k] = box.nearest(raw, k);
-      same_image = same_image && d[k] == raw;
-    }
-  }
-  KOKKOS_FORCEINLINE_FUNCTION double squared() const { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; }
-};
-
 /// Counts (list empty) or writes the neighbours of a vertex, in ascending bin order.
 struct FindNeighbours {
   PeriodicBox box;
@@ -80,10 +66,7 @@ struct ContactForce {
     double f[3] = {};
     for (int i = rows.begin(v); i < rows.begin(v + 1); ++i) {
       const PairVector pair(box, positions, v, rows.list(i));
-      const double squared = pair.squared();
-      if (!(squared < repulsion.range * repulsion.range) || squared == 0) continue;
-      const double distance = Kokkos::sqrt(squared);
-      const double scale = repulsion.magnitude(distance) / distance;
+      const double scale = pair_force_scale(repulsion, pair);
       for (int k = 0; k < 3; ++k) f[k] += scale * pair.d[k];
     }
     if (box.walls) f[2] += repulsion.magnitude(positions(v, 2)) - repulsion.magnitude(box.length[2] - positions(v, 2));

@@ -119,10 +119,11 @@ class SuspensionOf final : public Suspension {
     if (problem_.flow.kind == FlowKind::shear)
       sample.wall_relative_viscosity = 0.5 * (sample.wall_shear_stress[0] + sample.wall_shear_stress[1]) / unit;
     if (problem_.flow.kind == FlowKind::poiseuille) {
-      // Apparent viscosity: the flow rate of the fluid alone over the present one, from the mean velocity g H^2/(12 nu).
+      // Apparent viscosity: the flow rate of the fluid alone over the present one. The mean of the parabola over nodes half a spacing from the walls is
+      // g (H^2 + 1/2)/(12 nu).
       const double height = lattice_.nodes[2];
       const double nodes = double(lattice_.nodes[0]) * lattice_.nodes[1] * lattice_.nodes[2];
-      sample.relative_viscosity = lattice_.body_force * height * height / (12 * lattice_.viscosity) / (fluid_.momentum()[0] / nodes);
+      sample.relative_viscosity = lattice_.body_force * (height * height + 0.5) / (12 * lattice_.viscosity) / (fluid_.momentum()[0] / nodes);
       sample.bulk_relative_viscosity = none;
     }
   }

@@ -98,6 +98,26 @@ def check_interrupt(program, folder, scene):
             assert len(steps) > 1 and summary["steps"] - steps[-1] <= steps[1] - steps[0], "samples up to the interrupt are kept"
 
 
+def check_disk_full(program, folder, scene):
+    """On a small file system of its own: nothing is left when not even the start fits, everything up to then when it fills during the run."""
+    disk = folder / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "tmpfs", disk], capture_output=True).returncode != 0:
+        print("disk full: skipped, no permission to mount a tmpfs")
+        return
+    try:
+        result = run(program, "run", scene, "--output", disk / "out", check=False)
+        assert result.returncode == 2 and result.stderr.startswith("error: ") and result.stderr.count("\n") == 1, (result.returncode, result.stderr)
+        assert not (disk / "out").exists()
+        subprocess.run(["mount", "-o", "remount,size=4m", disk], check=True)
+        result = run(program, "run", scene, "--output", disk / "out", "--set", "output.snapshot_every=0.02", "--set", "run.strain=400", check=False)
+        assert result.returncode == 1 and result.stderr.startswith("error: "), (result.returncode, result.stderr)
+        with h5py.File(disk / "out/cells.vtkhdf") as file:
+            assert file["VTKHDF/Steps"].attrs["NSteps"] > 1
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
 def check_cases(program, folder):
     couette = folder / "couette.toml"
     couette.write_text("[box]\nsize = [2, 2, 4]\n[accuracy]\nradius = 5\ncollision = 'trt'\n[run]\nstrain = 1\n[output]\nfluid = true\nsnapshot_every = 0.5\n")
@@ -124,6 +144,7 @@ def main():
         check_outputs(program, folder, scene)
         check_packing_reuse(program, folder, scene)
         check_interrupt(program, folder, scene)
+        check_disk_full(program, folder, scene)
         check_cases(program, folder)
     print("all good")
 
