@@ -19,17 +19,22 @@ std::size_t padded_stride(std::size_t nodes) {
 template <class Storage, class Compute>
 struct SetPopulations {
   StreamingAccessor<Storage, Compute, 0> populations;
-  Kokkos::View<double* [3], Kokkos::LayoutRight, MemSpace> velocity;  // empty: linear profile
-  int nx, ny;
+  Kokkos::View<double* [3], Kokkos::LayoutRight, MemSpace> velocity;  // empty: the plane flow between the walls
+  int nx, ny, nz;
   double lower, shear_rate, relaxation_time;
+  double curvature;   // force/(2 viscosity) of the parabola
+  double half_force;  // the populations carry u - F/2
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, const int x, const int y, const int z) const {
-    Macroscopic<double> m{0, {lower + shear_rate * (z + 0.5), 0, 0}};
+    const double height = z + 0.5;
+    Macroscopic<double> m{0, {lower + shear_rate * height + curvature * height * (nz - height), 0, 0}};
+    const double gradient = shear_rate + curvature * (nz - 2 * height);
     if (velocity.extent(0) > 0) {
       const int flat = (z * ny + y) * nx + x;
       for (int k = 0; k < 3; ++k) m.u[k] = velocity(flat, k);
     }
+    m.u[0] -= half_force;
     double exact[19];
-    equilibrium_with_shear(exact, m, shear_rate, relaxation_time);
+    equilibrium_with_shear(exact, m, velocity.extent(0) > 0 ? 0.0 : gradient, relaxation_time);
     Compute g[19];
     for (int q = 0; q < 19; ++q) g[q] = static_cast<Compute>(exact[q]);
     populations.set(node, g);
@@ -150,9 +155,12 @@ void Fluid<Storage, Compute>::set_populations(const std::vector<double>& velocit
                                                on_device,
                                                grid_.nx,
                                                grid_.ny,
+                                               grid_.nz,
                                                parameters_.wall_velocity[0],
                                                shear_rate,
-                                               parameters_.relaxation_time});
+                                               parameters_.relaxation_time,
+                                               parameters_.walls ? parameters_.body_force * 1.5 / (parameters_.relaxation_time - 0.5) : 0.0,
+                                               0.5 * parameters_.body_force});
   exchange_populations<0>(false);
 }
 

@@ -31,7 +31,7 @@ class Fluid {
  public:
   explicit Fluid(const FluidParameters& parameters);
 
-  /// Rest, or the linear profile between the walls' velocities including its viscous stress: a plane shear flow is stationary from step 0.
+  /// The plane flow that walls and body force drive, including its viscous stress: linear profile, parabola or rest, stationary from step 0.
   void initialise();
   /// Equilibrium at velocities given on the host, [nz][ny][nx][3] (Taylor-Green and other tests).
   void initialise(const std::vector<double>& velocity);
