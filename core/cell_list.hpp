@@ -1,5 +1,7 @@
 // Points sorted into the cells of a coarse periodic grid: neighbours within one cell edge are found in the 27 cells around a point, in O(N).
 #pragma once
+#include <cmath>
+
 #include "core/types.hpp"
 
 namespace corpuscle {
@@ -12,9 +14,13 @@ struct BinGrid {
   BinGrid() = default;
   /// @param length box lengths; at most `max_bins` bins (fewer, larger ones where the box is huge)
   BinGrid(const double (&length)[3], double edge, int max_bins = 1 << 28) {
+    double total = 1;
     for (int k = 0; k < 3; ++k) {
       count[k] = int(length[k] / edge) > 1 ? int(length[k] / edge) : 1;
-      while (count[k] > 1 && double(count[k]) * count[(k + 1) % 3] > max_bins) --count[k];
+      total *= count[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+      if (total > max_bins) count[k] = int(count[k] * std::cbrt(max_bins / total)) > 1 ? int(count[k] * std::cbrt(max_bins / total)) : 1;
       inverse_edge[k] = count[k] / length[k];
     }
   }
