@@ -135,6 +135,33 @@ def check_cases(program, folder):
     assert 0 < summary["inclination"] < np.pi / 4 + 0.1
 
 
+def check_mesh_file(program, folder):
+    """A cell from an OFF file: an octahedron whose faces are split three times and pushed onto an ellipsoid."""
+    vertices = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    for _ in range(3):
+        middle, split = {}, []
+        for a, b, c in faces:
+            ends = [(a, b), (b, c), (c, a)]
+            for pair in ends:
+                key = tuple(sorted(pair))
+                if key not in middle:
+                    point = np.add(vertices[pair[0]], vertices[pair[1]]) / 2
+                    vertices.append(tuple(point / np.linalg.norm(point)))
+                    middle[key] = len(vertices) - 1
+            ab, bc, ca = (middle[tuple(sorted(pair))] for pair in ends)
+            split += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        faces = split
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"]
+    lines += [f"{x} {y} {0.6 * z}" for x, y, z in vertices] + [f"3 {a} {b} {c}" for a, b, c in faces]
+    (folder / "ellipsoid.off").write_text("\n".join(lines) + "\n")
+    scene = folder / "mesh.toml"
+    scene.write_text('[box]\nsize = [5, 5, 5]\n[flow]\ncapillary_number = 0.05\n[[cells]]\nfile = "ellipsoid.off"\ncount = 6\n[accuracy]\nradius = 4\n[run]\nstrain = 0.2\n')
+    run(program, "run", scene, "--output", folder / "mesh")
+    summary = json.loads((folder / "mesh/summary.json").read_text())
+    assert summary["cell_count"] == 6 and summary["relative_viscosity"] > 1 and summary["volume_drift_max"] < 0.01
+
+
 def main():
     program = sys.argv[1]
     with tempfile.TemporaryDirectory() as name:
@@ -146,6 +173,7 @@ def main():
         check_interrupt(program, folder, scene)
         check_disk_full(program, folder, scene)
         check_cases(program, folder)
+        check_mesh_file(program, folder)
     print("all good")
 
 
