@@ -98,6 +98,79 @@ class Outputs {
   std::optional<VtkHdfImage> fluid_;
 };
 
+double node_count(const LatticeParameters& lattice) { return double(lattice.nodes[0]) * lattice.nodes[1] * lattice.nodes[2]; }
+
+/// How the time loop ended.
+struct RunEnd {
+  std::int64_t steps = 0;
+  double seconds = 0;
+  int code = exit_code::success;
+  std::string stopped_by = "end";
+  std::string failure;  ///< message for the user; empty when all went well
+};
+
+/// The time loop: steps, samples, snapshots, progress, guards, until the end, a signal or a failure.
+RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Outputs& outputs, SeriesSummary& series, bool terminal) {
+  constexpr std::int64_t guard_every = 500;    // steps, where samples are further apart: a broken run must not go on for long
+  constexpr std::int64_t progress_every = 32;
+  ProgressOptions look;
+  look.terminal = terminal;
+  look.unicode = locale_is_unicode();
+  look.last_step = lattice.steps;
+  look.last_strain = lattice.shear_rate * double(lattice.steps);
+  Progress progress(std::cout, look);
+  ProgressState state;
+  const Kokkos::Timer timer;
+  const auto show = [&](std::int64_t steps_done) {
+    state.step = steps_done;
+    state.strain = lattice.shear_rate * double(steps_done);
+    state.mlups = node_count(lattice) * double(steps_done) / timer.seconds() / 1e6;
+    progress.update(state);
+  };
+
+  RunEnd end;
+  try {
+    for (; end.steps < lattice.steps; ++end.steps) {
+      const std::int64_t step = end.steps;
+      if (interrupted) {
+        end.stopped_by = "interrupt";
+        end.code = exit_code::interrupted;
+        break;
+      }
+      if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) outputs.snapshot(suspension);
+      if (step % lattice.series_every == 0) {
+        const Sample sample = suspension.step_and_measure();
+        suspension.check();
+        outputs.series(sample);
+        series.add(sample);
+        const auto viscosity = series.relative_viscosity();
+        state.relative_viscosity = viscosity.mean;
+        state.relative_viscosity_error = viscosity.error;
+        state.volume_drift_max = sample.volume_drift_max;
+        show(step + 1);
+      } else {
+        suspension.step();
+        if (step % guard_every == 0) suspension.check();
+        if (step % progress_every == 0) show(step + 1);
+      }
+    }
+    if (lattice.snapshot_every > 0) outputs.snapshot(suspension);
+  } catch (const SimulationError& broken) {
+    end.stopped_by = "guard";
+    end.failure = broken.what();
+    end.code = exit_code::broken_run;
+  } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
+    end.stopped_by = "output error";
+    end.failure = failed.what();
+    end.code = exit_code::failure;
+  }
+  Kokkos::fence();
+  end.seconds = timer.seconds();
+  show(end.steps);
+  progress.finish(end.stopped_by);
+  return end;
+}
+
 std::string result_line(const Summary& s, const fs::path& directory) {
   std::string text = fmt::format("{} steps in {} ({:.1f} MLUPS)", s.steps, format_duration(s.wall_seconds), s.mlups);
   if (std::isfinite(s.relative_viscosity.mean)) {
@@ -124,7 +197,13 @@ int run(const RunOptions& options) {
   std::signal(SIGTERM, on_signal);
   const KokkosSession session(options.threads);
   const bool terminal = stream_is_terminal(stdout);
-  if (!packed_before) packing.positions = pack(problem, lattice, types, terminal);
+  try {
+    if (!packed_before) packing.positions = pack(problem, lattice, types, terminal);
+  } catch (const InputError&) {
+    if (!interrupted) throw;
+    std::cerr << "error: Stopped while packing; nothing was written." << std::endl;
+    return exit_code::interrupted;
+  }
 
   std::error_code error;
   const bool existed = fs::exists(directory, error);
@@ -146,69 +225,18 @@ int run(const RunOptions& options) {
   Outputs& outputs = *created;
   packing.positions = {};
   SeriesSummary series(lattice, problem.run.discard);
-  ProgressOptions look;
-  look.terminal = terminal;
-  look.unicode = locale_is_unicode();
-  look.last_step = lattice.steps;
-  look.last_strain = lattice.shear_rate * double(lattice.steps);
-  Progress progress(std::cout, look);
-
-  const double nodes = double(lattice.nodes[0]) * lattice.nodes[1] * lattice.nodes[2];
-  const Kokkos::Timer timer;
-  ProgressState state;
-  std::string stopped_by = "end", failure;
-  int code = exit_code::success;
-  std::int64_t step = 0;
-  try {
-    for (; step < lattice.steps; ++step) {
-      if (interrupted) {
-        stopped_by = "interrupt";
-        code = exit_code::interrupted;
-        break;
-      }
-      if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) outputs.snapshot(*suspension);
-      if (step % lattice.series_every != 0) {
-        suspension->step();
-        continue;
-      }
-      const Sample sample = suspension->step_and_measure();
-      suspension->check();
-      outputs.series(sample);
-      series.add(sample);
-      const auto viscosity = series.relative_viscosity();
-      state.step = step + 1;
-      state.strain = lattice.shear_rate * double(step + 1);
-      state.relative_viscosity = viscosity.mean;
-      state.relative_viscosity_error = viscosity.error;
-      state.volume_drift_max = sample.volume_drift_max;
-      state.mlups = nodes * double(step + 1) / timer.seconds() / 1e6;
-      progress.update(state);
-    }
-    if (lattice.snapshot_every > 0) outputs.snapshot(*suspension);
-  } catch (const SimulationError& broken) {
-    stopped_by = "guard";
-    failure = broken.what();
-    code = exit_code::broken_run;
-  } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
-    stopped_by = "output error";
-    failure = failed.what();
-    code = exit_code::failure;
-  }
-  Kokkos::fence();
-  const double seconds = timer.seconds();
-  state.step = step;
-  state.strain = lattice.shear_rate * double(step);
-  progress.update(state);
-  progress.finish(stopped_by);
+  const RunEnd end = simulate(lattice, *suspension, outputs, series, terminal);
 
   Summary summary = series.result();
-  summary.steps = step;
-  summary.strain = lattice.shear_rate * double(step);
-  summary.wall_seconds = seconds;
-  summary.mlups = nodes * double(step) / seconds / 1e6;
+  summary.steps = end.steps;
+  summary.strain = lattice.shear_rate * double(end.steps);
+  summary.wall_seconds = end.seconds;
+  summary.mlups = node_count(lattice) * double(end.steps) / end.seconds / 1e6;
   summary.threads = Kokkos::DefaultExecutionSpace().concurrency();
   summary.bytes_peak = peak_memory_bytes();
-  summary.stopped_by = stopped_by;
+  summary.stopped_by = end.stopped_by;
+  std::string failure = end.failure;
+  int code = end.code;
   try {
     outputs.flush();
     write_summary(directory / "summary.json", summary);
