@@ -15,7 +15,7 @@ inline constexpr bool runs_on_host = Kokkos::SpaceAccessibility<Kokkos::HostSpac
 template <class Storage>
 using Populations = Kokkos::View<Storage**, Kokkos::LayoutRight, MemSpace>;
 
-/// Force density or velocity on the nodes: [padded nodes][4], the fourth component is padding for 16-byte access (PERFORMANCE: 13x on spreading).
+/// Force density or velocity on the nodes: [padded nodes][4], the fourth component is padding for 16-byte access (13x on spreading against separate components and atomics).
 template <class Real>
 using VectorField = Kokkos::View<Real* [4], Kokkos::LayoutRight, MemSpace>;
 

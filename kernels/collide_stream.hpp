@@ -8,7 +8,7 @@ namespace corpuscle {
 /// Where the force density of a node comes from. `none` and `uniform` need no field and no clearing pass.
 enum class Forcing { none, uniform, field };
 
-/// f(x + c, t + 1) = f(x, t) + collision + force (MODEL.md, Fluid). With Forcing::field the node's force is read and cleared and the
+/// f(x + c, t + 1) = f(x, t) + collision + force (docs/theory/model.md, Fluid). With Forcing::field the node's force is read and cleared and the
 /// force-corrected velocity written, so that coupling needs no sweep of its own; the uniform force is added in both forced forms.
 template <class Storage, class Compute, int Parity, Forcing forcing>
 struct CollideStream {

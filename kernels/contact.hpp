@@ -1,4 +1,4 @@
-// Short-range repulsion between vertices of different cells, and vertices and walls (MODEL.md, Membrane).
+// Short-range repulsion between vertices of different cells, and vertices and walls (docs/theory/model.md, Membrane).
 #pragma once
 #include "kernels/stencil.hpp"
 

@@ -1,4 +1,4 @@
-// Discrete delta functions of the immersed boundary method: weights of the nodes around a vertex along one axis (MODEL.md, Coupling).
+// Discrete delta functions of the immersed boundary method: weights of the nodes around a vertex along one axis (docs/theory/model.md, Coupling).
 // Peskin, Acta Numerica 11, 479 (2002); Roma, Peskin, Berger, J. Comput. Phys. 153, 509 (1999).
 #pragma once
 #include <Kokkos_Core.hpp>

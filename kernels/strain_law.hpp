@@ -1,4 +1,4 @@
-// In-plane elastic energy densities w(I1, I2) of a membrane, I1 = l1^2 + l2^2 - 2, I2 = l1^2 l2^2 - 1 (MODEL.md, Membrane).
+// In-plane elastic energy densities w(I1, I2) of a membrane, I1 = l1^2 + l2^2 - 2, I2 = l1^2 l2^2 - 1 (docs/theory/model.md, Membrane).
 // A new law is a struct like these and one line in physics/membrane.cpp.
 #pragma once
 #include <Kokkos_Macros.hpp>

@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 printf '%-9s %-7s %-22s %s\n' update points kappa_alpha/eta_0 result
 while read -r update points dilation; do
   result=stable
-  "$program" run "$root/scenes/paper_phi45.toml" --set accuracy.radius=9 --set accuracy.shear_modulus=0.003 --output "$work/case" --overwrite --set cells.0.count=35 --set "box.size=[5,5,6]" \
+  "$program" run "$root/scenes/paper_phi45.toml" --set accuracy.radius=9 --set accuracy.shear_modulus=0.003 --set flow.reynolds_number_max=0.1 --output "$work/case" --overwrite --set cells.0.count=35 --set "box.size=[5,5,6]" \
     --set output.snapshot_every=0 --set output.series_every=0.01 --set run.strain=1.2 --set accuracy.vertex_update="$update" \
     --set accuracy.delta_kernel="$points" --set cells.0.membrane.area_dilation="$dilation" >"$work/log" 2>&1 ||
     result=$(grep -o 'before step [0-9]*' "$work/log" | sed 's/before/unstable before/' || tail -1 "$work/log")

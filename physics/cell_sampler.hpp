@@ -1,4 +1,4 @@
-// Per-cell observables: centre, velocity, shape, volume, area, stresslet (MODEL.md, Stress and statistics).
+// Per-cell observables: centre, velocity, shape, volume, area, stresslet (docs/theory/model.md, Stress and statistics).
 #pragma once
 #include <vector>
 

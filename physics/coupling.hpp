@@ -1,4 +1,4 @@
-// Immersed boundary coupling between vertices and fluid: spread, interpolate (MODEL.md, Coupling).
+// Immersed boundary coupling between vertices and fluid: spread, interpolate (docs/theory/model.md, Coupling).
 #pragma once
 #include "core/counting_sort.hpp"
 #include "kernels/stencil.hpp"

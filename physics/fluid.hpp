@@ -1,4 +1,4 @@
-// The fluid: D3Q19 lattice Boltzmann with in-place streaming, periodic in x and y, walls or periodic in z (MODEL.md, Fluid).
+// The fluid: D3Q19 lattice Boltzmann with in-place streaming, periodic in x and y, walls or periodic in z (docs/theory/model.md, Fluid).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,7 +24,6 @@ struct FluidParameters {
   double body_force = 0;             ///< uniform force density along x
   bool needs_force = false;          ///< a force field that changes from node to node (cells)
 };
-
 
 template <class Storage, class Compute = Storage>
 class Fluid {

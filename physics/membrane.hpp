@@ -1,4 +1,4 @@
-// Elastic forces of all cells of one type (MODEL.md, Membrane): E = E_S + E_B + E_A + E_V, F = -dE/dx.
+// Elastic forces of all cells of one type (docs/theory/model.md, Membrane): E = E_S + E_B + E_A + E_V, F = -dE/dx.
 #pragma once
 #include <memory>
 

@@ -1,4 +1,4 @@
-// A closed triangulated surface on the host, and the reference shapes of MODEL.md, "Membrane".
+// A closed triangulated surface on the host, and the reference shapes of docs/theory/model.md, "Membrane".
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -19,7 +19,7 @@ struct Mesh {
 
 /// Geodesic icosahedron of frequency n on the unit sphere: 20 n^2 faces, 10 n^2 + 2 vertices, in an order that keeps neighbours close in memory.
 Mesh icosphere(int frequency);
-/// Red cell of large radius r (MODEL.md, reference shape; every vertex of the unit sphere keeps x, y and z is replaced).
+/// Red cell of large radius r (docs/theory/model.md, reference shape; every vertex of the unit sphere keeps x, y and z is replaced).
 Mesh red_cell_mesh(double radius, int frequency);
 Mesh sphere_mesh(double radius, int frequency);
 /// Spheroid with equatorial radius and semi-axis along z = aspect_ratio * radius; the larger of the two semi-axes is `radius`.
@@ -36,7 +36,7 @@ double mesh_area(const Mesh& mesh);
 double mesh_effective_volume(const Mesh& mesh, double shell_thickness);
 Vector3 mesh_centroid(const Mesh& mesh);  ///< of the enclosed volume
 
-/// Neighbourhood of every vertex, shared by all cells of a type (DESIGN.md, decision 7). Row v of each table has `degree(v)` valid entries.
+/// Neighbourhood of every vertex, shared by all cells of a type . Row v of each table has `degree(v)` valid entries.
 struct OneRing {
   int vertex_count = 0;
   int max_degree = 0;

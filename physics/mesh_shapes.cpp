@@ -1,4 +1,4 @@
-// Reference shapes of MODEL.md, "Membrane": all are images of one geodesic icosahedron, so they share their connectivity.
+// Reference shapes of docs/theory/model.md, "Membrane": all are images of one geodesic icosahedron, so they share their connectivity.
 #include <algorithm>
 #include <cmath>
 #include <map>

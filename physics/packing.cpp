@@ -25,11 +25,10 @@ constexpr double largest_move = 0.08;  // of a vertex in a round: a fraction of 
 constexpr double rigid_gain = 12;      // extra mobility of a cell's rigid motion: pushes from contacts move whole cells at once
 constexpr double sphere_fraction = 0.22;  // of the bounding spheres at the start: random placement succeeds quickly
 constexpr double growth_per_round = 0.06; // outward motion of the rim in a round
-constexpr double growth_gap = 0.5;        // of the range: cells grow only while no two come closer
-constexpr double final_gap = 0.45;        // of the range, at the end
+constexpr double first_gap = 0.5, least_gap = 0.25;  // of the range: cells grow only while no two come closer; where that stalls the gap shrinks step by step
+constexpr int patience = 150;             // rounds without growth before it does
 constexpr double reach = 1.5;             // range of the repulsion / contact range of the scene: keeps a vertex from slipping between the corners of a triangle
 constexpr int settling_rounds = 60;
-constexpr int most_rounds = 20000;
 
 /// Moves the vertices of one cell: x += mobility F, plus the rigid motion that the total force and torque ask for.
 struct Relax {
@@ -117,10 +116,19 @@ class Packer {
 
   std::vector<double> run(const PackingProgress& progress) {
     double gap = contact_.smallest_gap(cells_.positions());
-    int rounds = 0;
-    while (scale_ < 1 || gap < final_gap * range()) {
-      if (++rounds > most_rounds) does_not_fit(lattice_, scale_ < 1 ? "growth stalled" : "cells still touch after relaxation");
-      if (scale_ < 1 && gap > growth_gap * range()) grow();
+    double wanted = first_gap;
+    int rounds = 0, waited = 0;
+    while (scale_ < 1 || gap < 0.9 * wanted * range()) {
+      ++rounds;
+      if (++waited > patience) {
+        wanted *= 0.9;
+        waited = 0;
+        if (wanted < least_gap) does_not_fit(lattice_, scale_ < 1 ? "growth stalled" : "cells still touch after relaxation");
+      }
+      if (scale_ < 1 && gap > wanted * range()) {
+        grow();
+        waited = 0;
+      }
       relax();
       gap = contact_.smallest_gap(cells_.positions());
       if (progress && rounds % 10 == 0 && !progress(scale_, gap, rounds)) throw InputError("The packing was stopped.");
@@ -149,7 +157,19 @@ class Packer {
     return std::min(1.0, std::cbrt(sphere_fraction * box / spheres));
   }
 
-  std::vector<double> start_positions() const {
+  /// Random places; smaller cells where the spheres do not fit at once (narrow boxes, margins that do not shrink with the cells).
+  std::vector<double> start_positions() {
+    for (int attempt = 0;; ++attempt) {
+      try {
+        return start_positions_at_scale();
+      } catch (const InputError&) {
+        if (attempt == 5) throw;
+        scale_ *= 0.85;
+      }
+    }
+  }
+
+  std::vector<double> start_positions_at_scale() const {
     PlacementRequest request;
     for (int k = 0; k < 3; ++k) request.box[k] = lattice_.nodes[k];
     request.walls_z = problem_.box.walls;

@@ -31,7 +31,7 @@ struct FlowSpec {
   double reynolds_number_max = 0.1;          ///< Re = rho shear_rate r^2 / eta_0 must not exceed this
 };
 
-/// [[cells]].membrane: elastic moduli relative to kappa_S of the cell type (MODEL.md, Membrane).
+/// [[cells]].membrane: elastic moduli relative to kappa_S of the cell type (docs/theory/model.md, Membrane).
 struct MembraneSpec {
   StrainLawKind law = StrainLawKind::skalak;
   double area_dilation = 2.5;                ///< C = kappa_alpha / kappa_S (Skalak only)

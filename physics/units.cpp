@@ -17,17 +17,17 @@ namespace {
 const double speed_of_sound = 1 / std::sqrt(3.0);
 constexpr double tolerance = 1e-8;         // limits are met to rounding: 1.2/6 isn't 0.2 in binary
 constexpr double stiffness_at_rest = 0.25; // kappa_S / eta_0 where no flow sets it: soft, and well inside the limit
-constexpr double penalty = 6;              // kappa_A / eta_0: 1 at tau = 1 (MODEL.md, typical values)
+constexpr double penalty = 6;              // kappa_A / eta_0: 1 at tau = 1 (docs/theory/model.md, typical values)
 // A cell that breathes pushes sound waves: the pressure of a normal displacement d is kappa_V A d/V_0, the fluid answers with the velocity p/(2 rho c_s), so a step is stable
 // only for kappa_V A/(2 c_s V_0) well below 1. Measured at phi_eff = 0.45, averaged update: 0.8 is stable, 1.1 is not.
 constexpr double stable_volume = 0.8, default_volume = 0.5;
-constexpr double packable = 0.78;          // largest phi that deformable cells reach by growing (MODEL.md: 0.75 is needed)
+constexpr double packable = 0.78;          // largest phi that deformable cells reach by growing (docs/theory/model.md: 0.75 is needed)
 constexpr double packable_effective = 0.92;
 constexpr double most_nodes = 2e9;         // 32-bit node index
 constexpr double smallest_box = 4;         // nodes; below it the kernels' halo is wider than the box
 
 /// Largest kappa_S and kappa_alpha over eta_0 that stay stable in a dense suspension (phi_eff = 0.45, perf/stability_dense.sh; 1.2 is the estimate of
-/// MODEL.md, Coupling). With the Euler update the kernels that see staggered momenta (2 and 3 points) allow much less.
+/// docs/theory/model.md, Coupling). With the Euler update the kernels that see staggered momenta (2 and 3 points) allow much less.
 struct StiffnessLimits {
   double shear, dilation;
 };

@@ -1,4 +1,4 @@
-// From dimensionless numbers to lattice parameters (MODEL.md, "Units and dimensionless numbers").
+// From dimensionless numbers to lattice parameters (docs/theory/model.md, "Units and dimensionless numbers").
 #pragma once
 #include <array>
 #include <cstdint>

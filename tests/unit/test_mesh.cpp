@@ -1,4 +1,4 @@
-// Measures, topology and one-ring tables of the reference shapes, against MODEL.md and closed formulas.
+// Measures, topology and one-ring tables of the reference shapes, against docs/theory/model.md and closed formulas.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

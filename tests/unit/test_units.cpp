@@ -1,4 +1,4 @@
-// to_lattice against the paper's table (MODEL.md, "Units and dimensionless numbers") and the limits on the shear rate.
+// to_lattice against the paper's table (docs/theory/model.md, "Units and dimensionless numbers") and the limits on the shear rate.
 #include <cmath>
 #include <string>
 
