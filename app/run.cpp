@@ -43,9 +43,11 @@ void check_output(const fs::path& directory, bool overwrite) {
       throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); choose another directory, or add --overwrite to replace them.", directory.string(), name));
 }
 
-void remove_outputs(const fs::path& directory) {
+/// Removes the results of an earlier run, except the packing that this run starts from.
+void remove_outputs(const fs::path& directory, const fs::path& packing_in_use) {
   std::error_code error;
-  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "packing.h5", "scene.toml"}) fs::remove(directory / name, error);
+  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "packing.h5", "scene.toml"})
+    if (packing_in_use.empty() || !fs::equivalent(directory / name, packing_in_use, error)) fs::remove(directory / name, error);
 }
 
 /// Packs with a line that tells how far it is: redrawn on a terminal, every tenth in a log.
@@ -205,12 +207,13 @@ int run(const RunOptions& options) {
     return exit_code::interrupted;
   }
 
+  // Before anything old is removed: this is where memory runs out.
+  const auto suspension = make_suspension(problem, lattice, types, packing.positions);
   std::error_code error;
   const bool existed = fs::exists(directory, error);
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
-  remove_outputs(directory);
-  const auto suspension = make_suspension(problem, lattice, types, packing.positions);
+  remove_outputs(directory, problem.run.packing);
   std::optional<Outputs> created;
   try {
     std::ofstream scene(directory / "scene.toml");
@@ -218,7 +221,7 @@ int run(const RunOptions& options) {
     if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
     created.emplace(directory, problem, lattice, types);
   } catch (const OutputError& failed) {  // nothing has been computed: leave nothing behind
-    remove_outputs(directory);
+    remove_outputs(directory, problem.run.packing);
     if (!existed) fs::remove(directory, error);
     throw InputError(fmt::format("--output {}: {}; make room or choose another place.", directory.string(), failed.what()));
   }

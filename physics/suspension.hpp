@@ -20,7 +20,7 @@ class Suspension {
   virtual Sample step_and_measure() = 0;
   /// Positions and velocities of all vertices now.
   virtual Snapshot snapshot(bool with_fluid) const = 0;
-  /// @throws SimulationError when a vertex is not a number, too fast (|u| > 0.3) or outside the walls: names cell, step and likely cause.
+  /// @throws SimulationError when a vertex is not a number or too fast (|u| > 0.3): names cell, step and likely cause.
   virtual void check() const = 0;
 
   /// Momentum of the fluid, summed over the nodes; constant in a periodic box without body force.

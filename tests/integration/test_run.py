@@ -75,6 +75,9 @@ def check_packing_reuse(program, folder, scene):
     assert "packing:" not in log
     with h5py.File(folder / "a/run.h5") as a, h5py.File(folder / "b/run.h5") as b:
         assert np.array_equal(a["cells/centre"][0], b["cells/centre"][0]), "same start from the saved packing"
+    packed = (folder / "a/packing.h5").read_bytes()
+    run(program, "run", scene, "--output", folder / "a", "--overwrite", "--set", reuse, "--set", "run.strain=0.1")
+    assert (folder / "a/packing.h5").read_bytes() == packed, "replacing a run keeps the packing that it starts from"
     other = run(program, "run", scene, "--output", folder / "c", "--set", reuse, "--set", "cells.0.count=9", check=False)
     assert other.returncode == 2 and "number of cells" in other.stderr and not (folder / "c").exists(), other.stderr
 
