@@ -96,7 +96,7 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
     fmt::print("{}{}\n", first ? "Models      " : "            ", model);
     first = false;
   }
-  const double nodes = double(l.nodes[0]) * l.nodes[1] * l.nodes[2];
+  const double nodes = l.box_volume();
   fmt::print("Run         {} steps", l.steps);
   if (l.steps_per_strain > 0) fmt::print(" = {:g} strain units of {:.0f} steps", problem.run.strain, l.steps_per_strain);
   fmt::print("; series every {} steps", l.series_every);
@@ -115,7 +115,7 @@ int plan(const PlanOptions& options) {
   const Calibration calibration = calibrate(problem, lattice);
   std::int64_t vertices = 0;
   for (const auto& type : lattice.cells) vertices += type.count * type.vertices;
-  const double per_step = calibration.per_node * lattice.nodes[0] * lattice.nodes[1] * lattice.nodes[2] + calibration.per_vertex * double(vertices);
+  const double per_step = calibration.per_node * lattice.box_volume() + calibration.per_vertex * double(vertices);
   const double seconds = per_step * double(lattice.steps);
   const std::size_t bytes = predicted_bytes(problem, lattice);
   if (options.json)

@@ -100,8 +100,6 @@ class Outputs {
   std::optional<VtkHdfImage> fluid_;
 };
 
-double node_count(const LatticeParameters& lattice) { return double(lattice.nodes[0]) * lattice.nodes[1] * lattice.nodes[2]; }
-
 /// How the time loop ended.
 struct RunEnd {
   std::int64_t steps = 0;
@@ -126,7 +124,7 @@ RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Output
   const auto show = [&](std::int64_t steps_done) {
     state.step = steps_done;
     state.strain = lattice.shear_rate * double(steps_done);
-    state.mlups = node_count(lattice) * double(steps_done) / timer.seconds() / 1e6;
+    state.mlups = lattice.box_volume() * double(steps_done) / timer.seconds() / 1e6;
     progress.update(state);
   };
 
@@ -234,7 +232,7 @@ int run(const RunOptions& options) {
   summary.steps = end.steps;
   summary.strain = lattice.shear_rate * double(end.steps);
   summary.wall_seconds = end.seconds;
-  summary.mlups = node_count(lattice) * double(end.steps) / end.seconds / 1e6;
+  summary.mlups = lattice.box_volume() * double(end.steps) / end.seconds / 1e6;
   summary.threads = Kokkos::DefaultExecutionSpace().concurrency();
   summary.bytes_peak = peak_memory_bytes();
   summary.stopped_by = end.stopped_by;

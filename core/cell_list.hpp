@@ -1,5 +1,6 @@
 // Points sorted into the cells of a coarse periodic grid: neighbours within one cell edge are found in the 27 cells around a point, in O(N).
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "core/types.hpp"
@@ -16,11 +17,12 @@ struct BinGrid {
   BinGrid(const double (&length)[3], double edge, int max_bins = 1 << 28) {
     double total = 1;
     for (int k = 0; k < 3; ++k) {
-      count[k] = int(length[k] / edge) > 1 ? int(length[k] / edge) : 1;
+      count[k] = std::max(1, int(length[k] / edge));
       total *= count[k];
     }
+    const double shrink = total > max_bins ? std::cbrt(max_bins / total) : 1;
     for (int k = 0; k < 3; ++k) {
-      if (total > max_bins) count[k] = int(count[k] * std::cbrt(max_bins / total)) > 1 ? int(count[k] * std::cbrt(max_bins / total)) : 1;
+      count[k] = std::max(1, int(count[k] * shrink));
       inverse_edge[k] = count[k] / length[k];
     }
   }

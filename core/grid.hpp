@@ -21,7 +21,6 @@ struct Grid {
   KOKKOS_FORCEINLINE_FUNCTION int offset(int dx, int dy, int dz) const {
     return (dz * pitch_y() + dy) * pitch_x() + dx;
   }
-  int extent(int dimension) const { return dimension == 0 ? nx : dimension == 1 ? ny : nz; }
   std::size_t nodes() const { return std::size_t(nx) * ny * nz; }
   std::size_t padded_nodes() const { return std::size_t(pitch_x()) * pitch_y() * (nz + 2 * halo); }
 };

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/best_seconds.hpp"
 #include "core/random.hpp"
 #include "physics/cells.hpp"
 #include "physics/contact.hpp"
@@ -15,24 +16,7 @@ using namespace corpuscle;
 
 namespace {
 
-/// Best seconds of one call, over repetitions of at least 0.1 s.
-template <class F>
-double best_seconds(const F& f) {
-  f();
-  double best = 1e30;
-  for (int repeat = 0; repeat < 5; ++repeat) {
-    Kokkos::fence();
-    Kokkos::Timer timer;
-    int calls = 0;
-    do {
-      f();
-      ++calls;
-      Kokkos::fence();
-    } while (timer.seconds() < 0.1);
-    best = std::min(best, timer.seconds() / calls);
-  }
-  return best;
-}
+constexpr int repeats = 5;
 
 template <class Real>
 void measure(const char* name, double phi, int points, Precision membrane_precision, double radius, int n) {
@@ -63,12 +47,12 @@ void measure(const char* name, double phi, int points, Precision membrane_precis
   const auto membrane = make_membrane(mesh, type.moduli, membrane_precision, 0, type.count);
   const auto x = cells.positions(), F = cells.forces(), u = cells.velocities();
 
-  const double membrane_time = best_seconds([&] { membrane->compute_forces(x, F); });
-  const double spread = best_seconds([&] { coupling.spread(x, F, fluid.force()); });
-  const double scatter = best_seconds([&] { fluid.scatter_force(); });
-  const double collide = best_seconds([&] { fluid.collide_stream(); });
-  const double gather = best_seconds([&] { fluid.gather_velocity(); });
-  const double interpolate = best_seconds([&] { coupling.interpolate(x, u, fluid.velocity()); });
+  const double membrane_time = best_seconds([&] { membrane->compute_forces(x, F); }, repeats);
+  const double spread = best_seconds([&] { coupling.spread(x, F, fluid.force()); }, repeats);
+  const double scatter = best_seconds([&] { fluid.scatter_force(); }, repeats);
+  const double collide = best_seconds([&] { fluid.collide_stream(); }, repeats);
+  const double gather = best_seconds([&] { fluid.gather_velocity(); }, repeats);
+  const double interpolate = best_seconds([&] { coupling.interpolate(x, u, fluid.velocity()); }, repeats);
   const double total = membrane_time + spread + scatter + collide + gather + interpolate;
   const double vertices = cells.vertex_count(), nodes = double(size) * size * size;
   std::printf("  - {case: %-34s, cells: %4d, vertices: %6.0f, mlups: %5.1f, step_ms: %6.1f, collide_ms: %5.1f, halo_ms: %4.1f, spread_ms: %5.1f, interpolate_ms: %5.1f, membrane_ms: %5.1f,"

@@ -53,7 +53,7 @@ struct ContactStress {
 /// int x x^T = V/20 (s s^T + a a^T + b b^T + c c^T), s = a + b + c.
 struct Shape {
   int first_vertex, first_cell, vertices, faces;
-  Kokkos::View<int* [3], Kokkos::LayoutRight, MemSpace> face;
+  FaceTable face;
   VertexVectors x, u;
   CellValues out;
   KOKKOS_FORCEINLINE_FUNCTION Vec3<double> at(int base, int v, const Vec3<double>& origin) const {
@@ -98,14 +98,7 @@ struct Shape {
 }  // namespace
 
 CellSampler::CellSampler(const Cells& cells, const PeriodicBox& box) : box_(box), values_("cell_values", cells.cell_count()) {
-  for (const auto& type : cells.types()) {
-    Kokkos::View<int* [3], Kokkos::LayoutRight, MemSpace> faces("sampler_faces", type.faces());
-    const auto host = Kokkos::create_mirror_view(faces);
-    for (int f = 0; f < type.faces(); ++f)
-      for (int k = 0; k < 3; ++k) host(f, k) = type.reference.faces[f][k];
-    Kokkos::deep_copy(faces, host);
-    faces_.push_back(faces);
-  }
+  for (const auto& type : cells.types()) faces_.push_back(faces_on_device(type.reference));
 }
 
 void CellSampler::measure_membrane_stress(const Cells& cells) {

@@ -4,6 +4,7 @@
 
 #include "physics/cells.hpp"
 #include "physics/contact.hpp"
+#include "physics/mesh_device.hpp"
 #include "physics/sample.hpp"
 
 namespace corpuscle {
@@ -23,7 +24,7 @@ class CellSampler {
 
  private:
   PeriodicBox box_;
-  std::vector<Kokkos::View<int* [3], Kokkos::LayoutRight, MemSpace>> faces_;  // by type
+  std::vector<FaceTable> faces_;  // by type
   Kokkos::View<double* [23], Kokkos::LayoutRight, MemSpace> values_;          // centre 3, velocity 3, gyration 6, stresslet 9, volume, area
 };
 

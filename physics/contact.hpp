@@ -32,7 +32,6 @@ class Contact {
 
   const NeighbourRows& neighbours() const { return rows_; }
   const ContactParameters& parameters() const { return parameters_; }
-  void set_strength(double strength) { parameters_.strength = strength; }
   std::int64_t rebuilds() const { return rebuilds_; }
   std::size_t bytes() const;
 

@@ -2,29 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <map>
 
 #include "kernels/strain_law.hpp"
 #include "physics/membrane_driver.hpp"
+#include "physics/mesh_device.hpp"
 
 namespace corpuscle {
 namespace {
-
-/// Angle between the normals of two triangles that share the edge p -> q; l left, r right of it; positive where convex.
-double edge_angle(const Vector3& p, const Vector3& q, const Vector3& l, const Vector3& r) {
-  const Vector3 left = (q - p).cross(l - p), right = (r - p).cross(q - p);
-  return std::atan2(-(q - p).norm() * left.dot(r - p), left.dot(right));
-}
-
-/// Calls f(p, q, l, r) for every edge of a closed mesh, once.
-template <class F>
-void for_each_edge(const Mesh& mesh, const F& f) {
-  std::map<std::pair<int, int>, int> tip;  // directed edge -> vertex on its left
-  for (const auto& face : mesh.faces)
-    for (int k = 0; k < 3; ++k) tip[{face[k], face[(k + 1) % 3]}] = face[(k + 2) % 3];
-  for (const auto& [edge, left] : tip)
-    if (edge.first < edge.second) f(edge.first, edge.second, left, tip.at({edge.second, edge.first}));
-}
 
 template <class Real, class Law, bool needs_bending>
 class MembraneOf final : public Membrane {
@@ -37,12 +21,8 @@ class MembraneOf final : public Membrane {
     t.neighbour = Array2<int>("membrane_neighbour", vertices, ring_.max_degree);
     t.opposite = Array2<int>("membrane_opposite", vertices, ring_.max_degree);
     t.reference = decltype(t.reference)("membrane_reference", vertices, ring_.max_degree);
-    t.faces = decltype(t.faces)("membrane_faces", faces);
+    t.faces = faces_on_device(reference);
     copy(t.degree, ring_.degree.data(), vertices);
-    const auto faces_host = Kokkos::create_mirror_view(t.faces);
-    for (int f = 0; f < faces; ++f)
-      for (int k = 0; k < 3; ++k) faces_host(f, k) = reference.faces[f][k];
-    Kokkos::deep_copy(t.faces, faces_host);
     const auto neighbour = Kokkos::create_mirror_view(t.neighbour), opposite = Kokkos::create_mirror_view(t.opposite);
     for (int v = 0; v < vertices; ++v)
       for (int i = 0; i < ring_.degree[v]; ++i) {
@@ -157,10 +137,11 @@ MembraneEnergy membrane_energy(const Mesh& reference, const MembraneModuli& modu
     const double i1 = (g0.inverse() * g).trace() - 2, i2 = g.determinant() / g0.determinant() - 1;
     energy.strain += 0.5 * std::sqrt(g0.determinant()) * with_strain_law(moduli, [&](const auto& law) { return law.energy_density(i1, i2); });
   }
-  for_each_edge(reference, [&](int p, int q, int l, int r) {
-    const double change = edge_angle(vertices[p], vertices[q], vertices[l], vertices[r]) - edge_angle(x0[p], x0[q], x0[l], x0[r]);
+  for (const auto& e : mesh_edges(reference)) {
+    const auto angle = [&](const std::vector<Vector3>& x) { return edge_angle(x[e.p], x[e.q], x[e.left], x[e.right]); };
+    const double change = angle(vertices) - angle(x0);
     energy.bending += moduli.bending_constant * moduli.bending * change * change;
-  });
+  }
   const double a0 = mesh_area(reference), v0 = mesh_volume(reference);
   energy.area = 0.5 * moduli.global_area * std::pow(mesh_area(deformed) - a0, 2) / a0;
   energy.volume = 0.5 * moduli.volume * std::pow(mesh_volume(deformed) - v0, 2) / v0;

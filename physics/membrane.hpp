@@ -23,7 +23,8 @@ class Membrane {
   virtual std::size_t bytes() const = 0;
 };
 
-/// Factory: picks law, arithmetic and bending from the moduli. Bending and global terms whose modulus is 0 cost nothing.
+/// Factory: picks law, arithmetic and bending from the moduli. Without bending its kernel code is not there; without global terms the
+/// pass over the faces is skipped.
 /// @param reference stress-free shape in lattice units
 std::unique_ptr<Membrane> make_membrane(const Mesh& reference, const MembraneModuli& moduli, Precision precision, int first_vertex, int cell_count);
 

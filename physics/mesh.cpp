@@ -42,22 +42,30 @@ Vector3 face_normal(const Mesh& mesh, const std::array<int, 3>& face) {
 
 /// Integral of the mean curvature (k1 + k2)/2: half the sum over the edges of length times signed exterior angle (convex: positive).
 double integrated_mean_curvature(const Mesh& mesh) {
-  const EdgeTable table(mesh);
+  const auto& x = mesh.vertices;
   double sum = 0;
-  for (const auto& face : mesh.faces)
-    for (int c = 0; c < 3; ++c) {
-      const int a = face[c], b = face[(c + 1) % 3];
-      if (a > b) continue;  // every edge once
-      const Vector3 edge = mesh.vertices[b] - mesh.vertices[a];
-      const Vector3 left = face_normal(mesh, face), right = face_normal(mesh, {b, a, table.corner(b, a)});
-      // The edge runs counter-clockwise around the left face: at a ridge left x right points along it, in a valley against it.
-      const double length = edge.norm();
-      sum += length * std::atan2(left.cross(right).dot(edge) / length, left.dot(right));
-    }
+  for (const auto& e : mesh_edges(mesh)) sum += (x[e.q] - x[e.p]).norm() * edge_angle(x[e.p], x[e.q], x[e.left], x[e.right]);
   return 0.5 * sum;
 }
 
 }  // namespace
+
+std::vector<MeshEdge> mesh_edges(const Mesh& mesh) {
+  const EdgeTable table(mesh);
+  std::vector<MeshEdge> edges;
+  edges.reserve(3 * mesh.faces.size() / 2);
+  for (const auto& face : mesh.faces)
+    for (int c = 0; c < 3; ++c) {
+      const int p = face[c], q = face[(c + 1) % 3];
+      if (p < q) edges.push_back({p, q, face[(c + 2) % 3], table.corner(q, p)});
+    }
+  return edges;
+}
+
+double edge_angle(const Vector3& p, const Vector3& q, const Vector3& left, const Vector3& right) {
+  const Vector3 left_normal = (q - p).cross(left - p), right_normal = (right - p).cross(q - p);
+  return std::atan2(-(q - p).norm() * left_normal.dot(right - p), left_normal.dot(right_normal));
+}
 
 double mesh_volume(const Mesh& mesh) {
   double six_volumes = 0;

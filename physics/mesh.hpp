@@ -30,6 +30,15 @@ Mesh read_off(const std::string& path, double radius);
 /// The mesh of a scene's cell type. `radius` in lattice units already includes relative_radius.
 Mesh make_mesh(const CellSpec& spec, double radius, int frequency);
 
+/// An edge p -> q of a closed mesh and the tips of its two triangles: `left` of it and `right` of it, seen from outside.
+struct MeshEdge {
+  int p, q, left, right;
+};
+/// Every edge once, p < q. @throws InputError when the mesh is open or not consistently oriented.
+std::vector<MeshEdge> mesh_edges(const Mesh& mesh);
+/// Angle between the normals of the triangles (p, q, left) and (q, p, right); positive where the surface is convex.
+double edge_angle(const Vector3& p, const Vector3& q, const Vector3& left, const Vector3& right);
+
 double mesh_volume(const Mesh& mesh);
 double mesh_area(const Mesh& mesh);
 /// Volume with a shell of thickness h outside (Steiner formula with the discrete mean curvature, H = 1/2 sum_edges length * angle / ... ).

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 
 #include "core/error.hpp"
 #include "physics/contact.hpp"
@@ -30,6 +30,16 @@ constexpr int patience = 150;             // rounds without growth before it doe
 constexpr double reach = 1.5;             // range of the repulsion / contact range of the scene: keeps a vertex from slipping between the corners of a triangle
 constexpr int settling_rounds = 60;
 
+/// Mean of the vertices base ... base + vertices - 1.
+struct VertexMean {
+  double c[3] = {};
+  KOKKOS_FORCEINLINE_FUNCTION VertexMean(const VertexVectors& x, const int base, const int vertices) {
+    for (int v = base; v < base + vertices; ++v)
+      for (int k = 0; k < 3; ++k) c[k] += x(v, k) / vertices;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION double operator[](const int k) const { return c[k]; }
+};
+
 /// Moves the vertices of one cell: x += mobility F, plus the rigid motion that the total force and torque ask for.
 struct Relax {
   int first_vertex, vertices;
@@ -37,9 +47,8 @@ struct Relax {
   VertexVectors x, force;
   KOKKOS_FUNCTION void operator()(const int cell) const {
     const int base = first_vertex + cell * vertices;
-    double c[3] = {}, f[3] = {}, torque[3] = {}, inertia = 0;
-    for (int v = base; v < base + vertices; ++v)
-      for (int k = 0; k < 3; ++k) c[k] += x(v, k) / vertices, f[k] += force(v, k) / vertices;
+    const VertexMean c(x, base, vertices), f(force, base, vertices);
+    double torque[3] = {}, inertia = 0;
     for (int v = base; v < base + vertices; ++v) {
       const double r[3] = {x(v, 0) - c[0], x(v, 1) - c[1], x(v, 2) - c[2]};
       for (int k = 0; k < 3; ++k) {
@@ -68,9 +77,7 @@ struct Grow {
   VertexVectors x;
   KOKKOS_FUNCTION void operator()(const int cell) const {
     const int base = first_vertex + cell * vertices;
-    double c[3] = {};
-    for (int v = base; v < base + vertices; ++v)
-      for (int k = 0; k < 3; ++k) c[k] += x(v, k) / vertices;
+    const VertexMean c(x, base, vertices);
     for (int v = base; v < base + vertices; ++v)
       for (int k = 0; k < 3; ++k) x(v, k) = c[k] + factor * (x(v, k) - c[k]);
   }
@@ -153,8 +160,7 @@ class Packer {
   double start_scale() const {
     double spheres = 0;
     for (const auto& type : types_) spheres += type.count * 4.0 / 3.0 * 3.14159265358979 * std::pow(bounding_radius(type.reference) + 0.5 * range(), 3);
-    const double box = double(lattice_.nodes[0]) * lattice_.nodes[1] * lattice_.nodes[2];
-    return std::min(1.0, std::cbrt(sphere_fraction * box / spheres));
+    return std::min(1.0, std::cbrt(sphere_fraction * lattice_.box_volume() / spheres));
   }
 
   /// Random places; smaller cells where the spheres do not fit at once (narrow boxes, margins that do not shrink with the cells).

@@ -9,7 +9,7 @@ namespace corpuscle {
 /// One cell at one instant.
 struct CellSample {
   std::array<double, 3> centre{};     ///< centroid of the enclosed volume, unwrapped
-  std::array<double, 3> velocity{};   ///< mean velocity of the vertices (area-weighted by construction of the mesh)
+  std::array<double, 3> velocity{};   ///< mean velocity of the vertices
   std::array<double, 6> gyration{};   ///< second moment of the enclosed volume / volume, about the centre: xx yy zz xy xz yz
   std::array<double, 9> stresslet{};  ///< - sum_v F_a r_b (membrane and half of each pair repulsion), row a, column b; lattice energy units
   double volume = 0;

@@ -7,12 +7,10 @@
 #include "physics/cell_sampler.hpp"
 #include "physics/contact.hpp"
 #include "physics/coupling.hpp"
-#include "physics/fluid.hpp"
 #include "physics/membrane.hpp"
 #include "physics/suspension_sample.hpp"
 
 namespace corpuscle {
-namespace {
 
 FluidParameters fluid_parameters(const Problem& problem, const LatticeParameters& lattice) {
   FluidParameters p;
@@ -27,6 +25,8 @@ FluidParameters fluid_parameters(const Problem& problem, const LatticeParameters
   if (p.needs_force) p.halo = Coupling<double>::halo_width(problem.accuracy.delta_kernel);
   return p;
 }
+
+namespace {
 
 template <class Real>
 class SuspensionOf final : public Suspension {
@@ -69,8 +69,6 @@ class SuspensionOf final : public Suspension {
 
   void check() const override;
   std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
-  std::int64_t steps_done() const override { return fluid_.step(); }
-  const Cells* cells() const override { return cells_.get(); }
   std::size_t bytes() const override {
     std::size_t total = fluid_.bytes();
     if (cells_) total += cells_->bytes() + coupling_->bytes();
@@ -122,8 +120,7 @@ class SuspensionOf final : public Suspension {
       // Apparent viscosity: the flow rate of the fluid alone over the present one. The mean of the parabola over nodes half a spacing from the walls is
       // g (H^2 + 1/2)/(12 nu).
       const double height = lattice_.nodes[2];
-      const double nodes = double(lattice_.nodes[0]) * lattice_.nodes[1] * lattice_.nodes[2];
-      sample.relative_viscosity = lattice_.body_force * (height * height + 0.5) / (12 * lattice_.viscosity) / (fluid_.momentum()[0] / nodes);
+      sample.relative_viscosity = lattice_.body_force * (height * height + 0.5) / (12 * lattice_.viscosity) / (fluid_.momentum()[0] / lattice_.box_volume());
       sample.bulk_relative_viscosity = none;
     }
   }
@@ -192,8 +189,7 @@ std::unique_ptr<Suspension> make_suspension(const Problem& problem, const Lattic
 std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lattice) {
   const std::size_t real = problem.accuracy.precision == Precision::single_precision ? 4 : 8;
   const bool cells = !problem.cells.empty();
-  const int halo = cells ? Coupling<double>::halo_width(problem.accuracy.delta_kernel) : 1;
-  const Grid grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], halo};
+  const Grid grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], fluid_parameters(problem, lattice).halo};
   std::size_t bytes = grid.padded_nodes() * real * (19 + (cells ? 8 : 0));
   std::size_t vertices = 0;
   for (const auto& type : lattice.cells) vertices += std::size_t(type.count) * type.vertices;

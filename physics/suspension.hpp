@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "physics/cells.hpp"
+#include "physics/fluid.hpp"
 #include "physics/problem.hpp"
 #include "physics/sample.hpp"
 #include "physics/units.hpp"
@@ -25,11 +26,12 @@ class Suspension {
 
   /// Momentum of the fluid, summed over the nodes; constant in a periodic box without body force.
   virtual std::array<double, 3> fluid_momentum() const = 0;
-  virtual std::int64_t steps_done() const = 0;
-  virtual const Cells* cells() const = 0;  ///< null without cells
   /// Bytes allocated for fields and vertices.
   virtual std::size_t bytes() const = 0;
 };
+
+/// The fluid of a scene, as `make_suspension` constructs it.
+FluidParameters fluid_parameters(const Problem& problem, const LatticeParameters& lattice);
 
 /// @param positions of all vertices, from `place_cells`; empty without cells
 std::unique_ptr<Suspension> make_suspension(const Problem& problem, const LatticeParameters& lattice, std::vector<CellType> types,

@@ -9,12 +9,13 @@
 namespace corpuscle {
 
 void average_over_cells(Sample& sample, const std::vector<CellType>& types, const LatticeParameters& lattice, bool walls) {
-  const double box = double(lattice.nodes[0]) * lattice.nodes[1] * lattice.nodes[2];
+  const double box = lattice.box_volume();
   const double height = lattice.nodes[2];
   const double layer = walls && height > 8 * lattice.radius ? 4 * lattice.radius : 0;
   const double bulk = box * (height - 2 * layer) / height;
-  for (const auto& type : types) {
-    const double volume = mesh_volume(type.reference), area = mesh_area(type.reference);
+  for (std::size_t t = 0; t < types.size(); ++t) {
+    const CellType& type = types[t];
+    const double volume = lattice.cells[t].volume, area = lattice.cells[t].area;
     for (int c = type.first_cell; c < type.first_cell + type.count; ++c) {
       const auto& cell = sample.cells[c];
       const bool in_bulk = layer == 0 || (cell.centre[2] >= layer && cell.centre[2] <= height - layer);

@@ -26,8 +26,8 @@ constexpr double packable_effective = 0.92;
 constexpr double most_nodes = 2e9;         // 32-bit node index
 constexpr double smallest_box = 4;         // nodes; below it the kernels' halo is wider than the box
 
-/// Largest kappa_S and kappa_alpha over eta_0 that stay stable in a dense suspension (phi_eff = 0.45, perf/stability_dense.sh; 1.2 is the estimate of
-/// docs/theory/model.md, Coupling). With the Euler update the kernels that see staggered momenta (2 and 3 points) allow much less.
+/// Largest kappa_S and kappa_alpha over eta_0 that stay stable in a dense suspension (phi_eff = 0.45, perf/stability_dense.sh; 1.2 is an
+/// estimate, docs/theory/model.md). With the Euler update the kernels that see staggered momenta (2 and 3 points) allow much less.
 struct StiffnessLimits {
   double shear, dilation;
 };
@@ -52,8 +52,6 @@ std::string at_least(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 4);
   return fmt::format("{:.5g}", std::ceil(value / unit * (1 - tolerance / 2)) * unit);
 }
-
-double box_volume(const LatticeParameters& lattice) { return 1.0 * lattice.nodes[0] * lattice.nodes[1] * lattice.nodes[2]; }
 
 void set_fluid(const Problem& problem, LatticeParameters& lattice) {
   const double tau = problem.accuracy.relaxation_time;
@@ -135,7 +133,7 @@ std::int64_t count_of(const CellSpec& spec, std::size_t type, const CellTypeLatt
 }
 
 void set_cells(const Problem& problem, LatticeParameters& lattice) {
-  const double box = box_volume(lattice);
+  const double box = lattice.box_volume();
   double vertices = 0, one = 0;
   for (std::size_t i = 0; i < problem.cells.size(); ++i) {
     const CellSpec& spec = problem.cells[i];
@@ -341,8 +339,6 @@ void set_duration(const Problem& problem, LatticeParameters& lattice) {
 }
 
 }  // namespace
-
-double largest_stable_shear_modulus(const AccuracySpec& accuracy, double viscosity) { return stiffness_limits(accuracy).shear * viscosity; }
 
 LatticeParameters to_lattice(const Problem& problem) {
   LatticeParameters lattice;

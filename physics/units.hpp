@@ -43,6 +43,8 @@ struct CellTypeLattice {
 /// Everything the solver needs, in lattice units (dx = dt = rho_0 = 1).
 struct LatticeParameters {
   std::array<int, 3> nodes{};          ///< fluid nodes per direction
+  /// Number of fluid nodes, which is the volume of the box.
+  double box_volume() const { return double(nodes[0]) * nodes[1] * nodes[2]; }
   double radius = 0;                   ///< r
   double relaxation_time = 1;          ///< tau
   double viscosity = 0;                ///< nu = (tau - 1/2)/3 = eta_0
@@ -67,8 +69,5 @@ struct LatticeParameters {
 /// Chooses the largest shear rate that every limit allows and converts all quantities.
 /// @throws InputError when a number can't be met (names the key, the value, the allowed range and what to do).
 LatticeParameters to_lattice(const Problem& problem);
-
-/// Explicit coupling is stable for kappa_S <= this with the scene's kernel and vertex update.
-double largest_stable_shear_modulus(const AccuracySpec& accuracy, double viscosity);
 
 }  // namespace corpuscle

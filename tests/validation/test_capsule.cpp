@@ -1,4 +1,4 @@
-// A spherical capsule in shear: small deformation theory and the boundary-element reference (shared validation numbers, docs/validation.md).
+// A spherical capsule in shear: small deformation theory and the boundary-element reference.
 #include <cmath>
 
 #include "io/scene.hpp"
