@@ -159,7 +159,7 @@ class Packer {
 
   double start_scale() const {
     double spheres = 0;
-    for (const auto& type : types_) spheres += type.count * 4.0 / 3.0 * 3.14159265358979 * std::pow(bounding_radius(type.reference) + 0.5 * range(), 3);
+    for (const auto& type : types_) spheres += type.count * 4.0 / 3.0 * std::numbers::pi * std::pow(bounding_radius(type.reference) + 0.5 * range(), 3);
     return std::min(1.0, std::cbrt(sphere_fraction * lattice_.box_volume() / spheres));
   }
 
