@@ -22,6 +22,14 @@ struct RunOptions : SceneOptions {
 };
 int run(const RunOptions& options);
 
+struct StabilityOptions {
+  std::string output = "results/stability";  ///< directory of stability.json; a search that was interrupted goes on there
+  std::vector<std::string> only;             ///< parameters; empty: all
+  std::string conditions;                    ///< only cases whose conditions contain this text
+  int threads = 0;
+};
+int stability(const StabilityOptions& options);
+
 /// Starts Kokkos with that many threads; stops it at the end of the scope.
 class KokkosSession {
  public:

@@ -57,6 +57,13 @@ int main(int argc, char** argv) {
   run->add_option("-o,--output", run_options.output, "Directory for the results; created")->type_name("DIR")->required();
   run->add_flag("--overwrite", run_options.overwrite, "Replace the results of an earlier run in that directory");
 
+  app::StabilityOptions stability_options;
+  auto* stability = program.add_subcommand("stability", "Search for the stability limits that plan and run use (docs/stability.md); an interrupted search goes on where it stopped");
+  stability->add_option("-o,--output", stability_options.output, "Directory of the results, stability.json (default: results/stability)")->type_name("DIR");
+  stability->add_option("--only", stability_options.only, "Parameters to search, separated by commas (default: all)")->type_name("PARAMETER")->delimiter(',');
+  stability->add_option("--conditions", stability_options.conditions, "Only cases whose conditions contain this text, for example \"in flow, 3 points\"")->type_name("TEXT");
+  stability->add_option("--threads", stability_options.threads, "Number of host threads (default: OMP_NUM_THREADS, else all cores)")->type_name("N")->check(CLI::Range(1, 4096));
+
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -64,6 +71,7 @@ int main(int argc, char** argv) {
     return fail(exit_code::bad_input, (std::string(error.what()) + "; see corpuscle --help").c_str());
   }
   try {
+    if (*stability) return app::stability(stability_options);
     return *plan ? app::plan(plan_options) : app::run(run_options);
   } catch (const InputError& error) {
     return fail(exit_code::bad_input, error.what());

@@ -80,6 +80,7 @@ struct AccuracySpec {
   double shell_thickness = 0.30;             ///< lattice units, for the effective volume fraction
   std::optional<double> shear_modulus;       ///< kappa_S in lattice units; default: the largest stable one
   std::optional<double> shear_rate;          ///< in lattice units; default: the largest that all limits allow
+  bool allow_unstable = false;               ///< what measured stability limits refuse is run with a warning
 };
 
 /// [run]

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "physics/mesh.hpp"
+#include "physics/stability_limits.hpp"
 
 namespace corpuscle {
 
@@ -39,9 +40,6 @@ StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
     default: return {1.2, 4};
   }
 }
-
-/// kappa_V for which kappa_V A/(2 c_s V_0) has the given value.
-double volume_modulus(const CellTypeLattice& cell, double response) { return response * 2 * speed_of_sound * cell.volume / cell.area; }
 
 /// Rounded to five digits, never beyond `value`: a limit that a message offers must itself be accepted.
 std::string at_most(double value) {
@@ -149,6 +147,8 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     cell.faces = static_cast<std::int64_t>(mesh.faces.size());
     cell.volume = mesh_volume(mesh);
     cell.area = mesh_area(mesh);
+    cell.edge = mean_edge(mesh);
+    cell.squared_curvature = squared_curvature(mesh);
     cell.effective_volume = mesh_effective_volume(mesh, problem.accuracy.shell_thickness);
     cell.count = count_of(spec, i, cell, box);
     lattice.phi_geometric += static_cast<double>(cell.count) * cell.volume / box;

@@ -35,6 +35,8 @@ struct CellTypeLattice {
   std::int64_t faces = 0;
   double volume = 0;            ///< of the mesh, lattice units
   double area = 0;
+  double edge = 0;              ///< mean edge of the mesh
+  double squared_curvature = 0; ///< mean of (2H)^2 over the surface
   double effective_volume = 0;  ///< with the shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
   std::int64_t count = 0;
   MembraneModuli moduli;

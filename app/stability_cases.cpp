@@ -1,0 +1,190 @@
+#include "app/stability_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "io/scene_keys.hpp"
+
+namespace corpuscle::app {
+namespace {
+
+using Kind = ProbeScene::Kind;
+constexpr int kernels[] = {2, 3, 4};
+
+std::vector<std::string> update_names() {
+  std::vector<std::string> names;
+  for (const auto& name : scene::choice_list(*scene::find_key("accuracy.vertex_update"))) names.emplace_back(name);
+  return names;
+}
+
+class List {
+ public:
+  std::vector<StabilityCase> cases;
+
+  /// `where` beyond the scene's kind, kernel, update and tau, which all conditions begin with.
+  StabilityCase& add(const char* parameter, const char* unit, const ProbeScene& scene, LimitSearch search, std::function<void(ProbeScene&, double)> set,
+                     const std::string& where = "") {
+    StabilityCase c;
+    c.parameter = parameter;
+    c.unit = unit;
+    c.scene = scene;
+    c.search = search;
+    c.set = std::move(set);
+    c.shown = [](double v) { return v; };
+    c.conditions = scene.kind == Kind::fluid_only
+                       ? fmt::format("fluid alone, {}, tau = {:g}", scene.collision == CollisionKind::bgk ? "BGK" : "TRT", scene.relaxation_time)
+                       : fmt::format("{}, {} points, {}, tau = {:g}", scene.kind == Kind::at_rest ? "at rest" : "in flow", scene.delta_kernel, updates[int(scene.update)],
+                                     scene.relaxation_time);
+    if (!where.empty()) c.conditions += ", " + where;
+    cases.push_back(std::move(c));
+    return cases.back();
+  }
+
+  const std::vector<std::string> updates = update_names();
+};
+
+void set_shear(ProbeScene& s, double v) { s.shear = v; }
+void set_dilation(ProbeScene& s, double v) { s.dilation = v; }
+void set_bending(ProbeScene& s, double v) { s.bending = v; }
+void set_red_cell(ProbeScene& s, double v) { s.set_red_cell(v); }
+void set_area(ProbeScene& s, double v) { s.area = v; }
+void set_volume(ProbeScene& s, double v) { s.volume = v; }
+void set_contact(ProbeScene& s, double v) { s.contact = v; }
+void set_mach(ProbeScene& s, double v) { s.mach = v; }
+void set_capillary_number(ProbeScene& s, double v) { s.capillary_number = v; }
+
+ProbeScene scene_of(Kind kind, int kernel, int update, double tau = 1) {
+  ProbeScene s;
+  s.steps = kind == Kind::at_rest ? 1500 : 2000;
+  s.kind = kind;
+  s.delta_kernel = kernel;
+  s.update = VertexUpdate(update);
+  s.relaxation_time = tau;
+  return s;
+}
+
+/// In flow the membrane is a soft red cell but for the searched modulus.
+ProbeScene soft_in_flow(int kernel, int update, double tau = 1) {
+  ProbeScene s = scene_of(Kind::in_flow, kernel, update, tau);
+  s.set_red_cell(0.1);
+  return s;
+}
+
+const LimitSearch modulus{4, 0.02, 300, 1.15};  // kappa / eta_0
+
+void stiffness_in_flow(List& list) {
+  for (std::size_t u = 0; u < list.updates.size(); ++u)
+    for (const int kernel : kernels)
+      for (const double tau : {1.0, 0.6, 2.0}) list.add("red_cell", "eta_0", soft_in_flow(kernel, int(u), tau), modulus, set_red_cell);
+  for (std::size_t u = 0; u < list.updates.size(); ++u)
+    for (const int kernel : kernels) {
+      list.add("kappa_S", "eta_0", soft_in_flow(kernel, int(u)), modulus, set_shear);
+      list.add("kappa_alpha", "eta_0", soft_in_flow(kernel, int(u)), modulus, set_dilation);
+    }
+}
+
+void fractions_and_contact(List& list) {
+  for (std::size_t u = 0; u < list.updates.size(); ++u) {
+    for (const double phi : {0.2, 0.66, 0.9}) {
+      ProbeScene s = soft_in_flow(3, int(u));
+      s.phi = phi;
+      list.add("phi_eff", "eta_0", s, modulus, set_red_cell, fmt::format("phi_eff = {:g}", phi));
+    }
+    for (const int kernel : kernels) list.add("contact", "eta_0", soft_in_flow(kernel, int(u)), LimitSearch{4, 0.1, 1000, 1.15}, set_contact);
+    list.add("kappa_B", "eta_0", soft_in_flow(3, int(u)), LimitSearch{1, 0.02, 100, 1.15}, set_bending);
+    list.add("kappa_A", "response", soft_in_flow(3, int(u)), LimitSearch{1, 0.02, 100, 1.15}, set_area);
+    for (const double tau : {1.0, 0.6}) list.add("kappa_V", "response", soft_in_flow(3, int(u), tau), LimitSearch{1, 0.02, 100, 1.15}, set_volume);
+  }
+}
+
+void stiffness_at_rest(List& list) {
+  for (std::size_t u = 0; u < list.updates.size(); ++u)
+    for (const int kernel : kernels)
+      for (const double edge : {1.0, 0.4, 0.7, 1.5, 2.5}) {
+        ProbeScene s = scene_of(Kind::at_rest, kernel, int(u));
+        s.edge = edge;
+        list.add("kappa_S", "eta_0", s, modulus, set_shear, fmt::format("edge = {:g}", edge));
+        list.add("kappa_alpha", "eta_0", s, modulus, set_dilation, fmt::format("edge = {:g}", edge));
+        if (edge == 1 || (kernel == 3 && edge != 0.4 && edge != 2.5)) list.add("kappa_B", "eta_0", s, LimitSearch{2, 0.02, 100, 1.15}, set_bending, fmt::format("edge = {:g}", edge));
+      }
+  for (std::size_t u = 0; u < list.updates.size(); ++u)
+    for (const int kernel : kernels)
+      for (const double tau : {1.0, 0.6, 2.0}) list.add("red_cell", "eta_0", scene_of(Kind::at_rest, kernel, int(u), tau), modulus, set_red_cell);
+}
+
+void global_terms(List& list) {
+  const LimitSearch response{1, 0.02, 100, 1.15};
+  for (std::size_t u = 0; u < list.updates.size(); ++u)
+    for (const int kernel : kernels)
+      for (const double radius : {5.0, 8.0}) {
+        if (radius != 5 && kernel != 3) continue;
+        for (const double tau : {1.0, 2.0}) {
+          if (tau != 1 && kernel != 3) continue;
+          ProbeScene s = scene_of(Kind::at_rest, kernel, int(u), tau);
+          s.radius = radius;
+          s.set_red_cell(0.3);
+          list.add("kappa_A", "response", s, response, set_area, fmt::format("r = {:g}", radius));
+          list.add("kappa_V", "response", s, response, set_volume, fmt::format("r = {:g}", radius));
+        }
+      }
+}
+
+void precision(List& list) {
+  for (std::size_t u = 0; u < list.updates.size(); ++u) {
+    ProbeScene s = soft_in_flow(3, int(u));
+    s.precision = Precision::single_precision;
+    list.add("precision", "eta_0", s, modulus, set_red_cell, "single precision");
+  }
+}
+
+void capillary_numbers(List& list) {
+  ProbeScene s = soft_in_flow(3, 0);
+  s.steps = 6000;
+  list.add("Ca", "", s, LimitSearch{10, 0.1, 100, 1.15}, set_capillary_number, "Re = 0.1, 4 strain units");
+}
+
+/// tau - 1/2 is searched as its inverse, whose limit is an upper one.
+void fluid(List& list) {
+  for (const auto collision : {CollisionKind::bgk, CollisionKind::trt}) {
+    for (const double tau : {0.51, 0.55, 0.6, 1.0, 2.0, 5.0}) {
+      ProbeScene s = scene_of(Kind::fluid_only, 3, 0, tau);
+      s.collision = collision;
+      list.add("Mach", "c_s", s, LimitSearch{0.5, 0.01, 3, 1.1}, set_mach);
+    }
+    for (const double mach : {0.1, 0.3}) {
+      ProbeScene s = scene_of(Kind::fluid_only, 3, 0, 1);
+      s.collision = collision;
+      s.mach = mach;
+      auto& c = list.add("tau", "", s, LimitSearch{100, 1, 1e4, 1.15}, [](ProbeScene& at, double v) { at.relaxation_time = 0.5 + 1 / v; });
+      c.conditions = fmt::format("fluid alone, {}, Ma = {:g}", collision == CollisionKind::bgk ? "BGK" : "TRT", mach);
+      c.shown = [](double v) { return 0.5 + 1 / v; };
+      c.smallest = true;
+    }
+    ProbeScene s = soft_in_flow(3, 0);
+    s.collision = collision;
+    auto& c = list.add("tau", "", s, LimitSearch{100, 1, 1e4, 1.15}, [](ProbeScene& at, double v) {
+      at.relaxation_time = 0.5 + 1 / v;
+      at.set_red_cell(1);
+    });
+    c.conditions = fmt::format("in flow, 3 points, {}, {}, kappa_S = eta_0", list.updates[0], collision == CollisionKind::bgk ? "BGK" : "TRT");
+    c.shown = [](double v) { return 0.5 + 1 / v; };
+    c.smallest = true;
+  }
+}
+
+}  // namespace
+
+std::vector<StabilityCase> stability_cases() {
+  List list;
+  stiffness_in_flow(list);
+  fractions_and_contact(list);
+  stiffness_at_rest(list);
+  global_terms(list);
+  precision(list);
+  capillary_numbers(list);
+  fluid(list);
+  return std::move(list.cases);
+}
+
+}  // namespace corpuscle::app

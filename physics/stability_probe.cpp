@@ -1,0 +1,130 @@
+#include "physics/stability_probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/random.hpp"
+#include "physics/membrane.hpp"
+#include "physics/suspension.hpp"
+
+namespace corpuscle {
+namespace {
+
+constexpr double displacement = 1e-3;    // small against every length, large against rounding
+constexpr double hopeless = 1e4;         // growth of the jitter after which nothing more can be learnt
+constexpr double quiet = 1e-7;           // and decay
+constexpr double slowest_growth = 3e-6;  // per step: runs last up to a million steps
+// In flow, jitter relative to gamma_dot r. Resolved motion has about gamma_dot: 1e-3. Growth counts from `suspicious` on; `drowned` is no flow any more.
+constexpr double suspicious = 0.03, drowned = 1;
+constexpr double doubling = 0.7;         // growth over the last half of a probe that isn't chance
+
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / (double(a.size()) / 3));
+}
+
+/// Steps through one window and returns the mean jitter in it, from pairs of neighbouring steps spread over the window.
+double jitter_over(Suspension& suspension, std::int64_t steps) {
+  constexpr int pairs = 8;
+  double sum = 0;
+  std::int64_t done = 0;
+  for (int pair = 1; pair <= pairs; ++pair) {
+    const std::int64_t until = steps * pair / pairs;
+    for (; done < until - 1; ++done) suspension.step();
+    const auto before = suspension.snapshot(false).velocities;
+    suspension.step();
+    ++done;
+    sum += rms_difference(suspension.snapshot(false).velocities, before);
+    suspension.check();
+  }
+  return sum / pairs;
+}
+
+double elastic_energy(const CellType& type, const std::vector<double>& positions) {
+  std::vector<Vector3> vertices(type.vertices());
+  for (int v = 0; v < type.vertices(); ++v)
+    for (int k = 0; k < 3; ++k) vertices[v][k] = positions[3 * std::size_t(type.first_vertex + v) + k];
+  return membrane_energy(type.reference, type.moduli, vertices).total();
+}
+
+/// Slope of log(values) over the last half, per window.
+double late_slope(const std::vector<double>& values) {
+  const std::size_t first = values.size() / 2;
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = first; i < values.size(); ++i) {
+    const double x = double(i), y = std::log(std::max(values[i], 1e-300));
+    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return n > 1 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : 0;
+}
+
+}  // namespace
+
+void displace(std::vector<double>& positions, double length, std::uint64_t seed) {
+  RandomStream random(seed);
+  for (double& x : positions) x += random.uniform(-length, length);
+}
+
+StabilityVerdict probe_at_rest(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, std::vector<double> positions,
+                               const ProbeLength& length) {
+  displace(positions, displacement, 1);
+  const auto suspension = make_suspension(problem, lattice, types, positions);
+  const double energy = elastic_energy(types[0], positions);
+  const std::int64_t window = std::max<std::int64_t>(16, length.steps / length.windows);
+  StabilityVerdict verdict;
+  std::vector<double> jitter;
+  try {
+    for (int w = 0; w < length.windows; ++w) {
+      jitter.push_back(jitter_over(*suspension, window));
+      verdict.steps += window;
+      if (jitter[w] > hopeless * jitter[0] || jitter[w] < quiet * jitter[0]) break;
+    }
+  } catch (const SimulationError&) {
+    verdict.reason = "a vertex is too fast or not a number";
+    return verdict;
+  }
+  verdict.jitter = jitter.back();
+  verdict.growth_rate = late_slope(jitter) / double(window);
+  const double ratio = elastic_energy(types[0], suspension->snapshot(false).positions) / energy;
+  const bool decayed = jitter.back() < quiet * jitter[0];
+  if (!decayed && (verdict.growth_rate > slowest_growth || jitter.back() > hopeless * jitter[0])) verdict.reason = "velocity noise grows";
+  else if (!(ratio < 1)) verdict.reason = "the elastic energy grows";
+  else {
+    verdict.stable = true;
+    verdict.reason = "relaxes";
+  }
+  return verdict;
+}
+
+StabilityVerdict probe_in_flow(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const std::vector<double>& positions,
+                               const ProbeLength& length) {
+  const auto suspension = make_suspension(problem, lattice, types, positions);
+  const std::int64_t window = std::max<std::int64_t>(16, length.steps / length.windows);
+  const double unit = lattice.shear_rate * lattice.radius;
+  StabilityVerdict verdict;
+  std::vector<double> jitter;
+  try {
+    for (int w = 0; w < length.windows; ++w) {
+      jitter.push_back(jitter_over(*suspension, window) / unit);
+      verdict.steps += window;
+      if (w > 0 && jitter[w] > 3 * drowned) break;
+    }
+  } catch (const SimulationError&) {
+    verdict.reason = "a vertex is too fast or not a number";
+    return verdict;
+  }
+  verdict.jitter = jitter.back();
+  verdict.growth_rate = late_slope(jitter) / double(window);
+  const double growth = verdict.growth_rate * double(verdict.steps) / 2;
+  if (jitter.back() > drowned) verdict.reason = "velocity noise above the shear velocity";
+  else if (jitter.back() > suspicious && growth > doubling) verdict.reason = "velocity noise grows";
+  else {
+    verdict.stable = true;
+    verdict.reason = "velocity noise stays small";
+  }
+  return verdict;
+}
+
+}  // namespace corpuscle
