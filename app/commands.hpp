@@ -30,6 +30,9 @@ struct StabilityOptions {
 };
 int stability(const StabilityOptions& options);
 
+/// One line each on stderr, so that they stand out of what plan and run print.
+void print_warnings(const std::vector<std::string>& warnings);
+
 /// Starts Kokkos with that many threads; stops it at the end of the scope.
 class KokkosSession {
  public:

@@ -51,6 +51,8 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
   j["series_every_steps"] = l.series_every;
   j["snapshot_every_steps"] = l.snapshot_every;
   for (const auto& limit : l.limits) j["limits"].push_back({{"name", limit.name}, {"shear_rate", limit.shear_rate}});
+  for (const auto& m : l.margins) j["stability"].push_back({{"name", m.name}, {"value", m.value}, {"limit", m.limit}});
+  j["warnings"] = l.warnings;
   for (const auto& t : l.cells)
     j["cells"].push_back({{"name", t.name},
                           {"count", t.count},
@@ -84,6 +86,10 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
       fmt::print("{}{}: shear rate <= {:.4g} ({:.3g} x the chosen one){}\n", i == 0 ? "Limits      " : "            ", l.limits[i].name, l.limits[i].shear_rate,
                  l.limits[i].shear_rate / l.shear_rate, i == 0 ? "  <- decides" : "");
   }
+  for (std::size_t i = 0; i < l.margins.size(); ++i) {
+    const auto& m = l.margins[i];
+    fmt::print("{}{}: {:.3g}, stable up to {:.3g} ({:.0f} %)\n", i == 0 ? "Stability   " : "            ", m.name, m.value, m.limit, 100 * m.value / m.limit);
+  }
   std::int64_t vertices = 0;
   for (const auto& t : l.cells) {
     fmt::print("Cells       {} x {}: r = {:g}, {} vertices, {} faces, kappa_S = {:.4g}, kappa_alpha = {:.4g}, kappa_B = {:.4g}, kappa_A = {:.4g}, kappa_V = {:.4g}\n", t.count,
@@ -111,6 +117,7 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
 int plan(const PlanOptions& options) {
   const Problem problem = read_scene(options.scene, options.overrides);
   const LatticeParameters lattice = to_lattice(problem);
+  print_warnings(lattice.warnings);
   const KokkosSession session(options.threads);
   const Calibration calibration = calibrate(problem, lattice);
   std::int64_t vertices = 0;

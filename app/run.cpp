@@ -188,6 +188,7 @@ int run(const RunOptions& options) {
   const Problem problem = read_scene(options.scene, options.overrides);
   const LatticeParameters lattice = to_lattice(problem);
   check_output(directory, options.overwrite);
+  print_warnings(lattice.warnings);
   const auto types = make_cell_types(problem, lattice);
   Packing packing = packing_layout(lattice);
   const bool packed_before = !problem.run.packing.empty();
@@ -236,6 +237,7 @@ int run(const RunOptions& options) {
   summary.threads = Kokkos::DefaultExecutionSpace().concurrency();
   summary.bytes_peak = peak_memory_bytes();
   summary.stopped_by = end.stopped_by;
+  summary.warnings = lattice.warnings;
   std::string failure = end.failure;
   int code = end.code;
   try {

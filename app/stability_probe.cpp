@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "app/stability_cases.hpp"
+#include "core/error.hpp"
 #include "core/random.hpp"
 #include "physics/fluid.hpp"
 #include "physics/packing.hpp"
@@ -15,8 +16,6 @@
 
 namespace corpuscle::app {
 namespace {
-
-constexpr double edge_of_unit_icosphere = 1.10;  // mean edge times frequency / radius, geodesic icosahedron (red cell: 1.0, being flatter)
 
 /// Plane Couette flow of the fluid alone, with noise of 1 % of the wall velocity: stable when the noise has decayed at the end.
 StabilityVerdict probe_fluid(const ProbeScene& scene) {
@@ -51,6 +50,17 @@ StabilityVerdict probe_fluid(const ProbeScene& scene) {
   verdict.stable = std::isfinite(verdict.jitter) && verdict.jitter < before && verdict.jitter < 1.05 * middle;
   verdict.reason = verdict.stable ? "noise decays" : "noise grows";
   return verdict;
+}
+
+/// With another seed where a small full box can't be packed at once.
+std::vector<double> pack(Problem problem, const LatticeParameters& lattice, const std::vector<CellType>& types) {
+  for (problem.run.seed = 1;; ++problem.run.seed) {
+    try {
+      return place_cells(problem, lattice, types);
+    } catch (const InputError&) {
+      if (problem.run.seed == 8) throw;
+    }
+  }
 }
 
 }  // namespace
@@ -132,7 +142,7 @@ Prober::Built Prober::build(const ProbeScene& scene) {
     l.contact_strength = m.shear;
     l.contact_range = 1;
     const auto types = make_cell_types(soft, l);
-    const auto suspension = make_suspension(soft, l, types, place_cells(soft, l, types));
+    const auto suspension = make_suspension(soft, l, types, pack(soft, l, types));
     for (int step = 0; step < 500; ++step) suspension->step();
     suspension->check();
     packed = suspension->snapshot(false).positions;

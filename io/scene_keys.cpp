@@ -76,6 +76,8 @@ const Key table[] = {
     {"accuracy.shear_modulus", CORPUSCLE_FIELD(P.accuracy.shear_modulus), positive(10), "", "lattice units",
      "largest that all limits allow (rest: at most η₀/4)", "κ_S; fixes the shear rate through Ca"},
     {"accuracy.shear_rate", CORPUSCLE_FIELD(P.accuracy.shear_rate), positive(1), "", "1 / time step", "largest that all limits allow", "γ̇ (at the wall for poiseuille)"},
+    {"accuracy.allow_unstable", CORPUSCLE_FIELD(P.accuracy.allow_unstable), any, "", "", "",
+     "What measured stability limits refuse (docs/stability.md) is run with a warning instead"},
 
     {"run.strain", CORPUSCLE_FIELD(P.run.strain), positive(1e9), "", "1/γ̇", "", "Length of the run; not with `rest`"},
     {"run.steps", CORPUSCLE_FIELD(P.run.steps), between(1, many_steps), "", "time steps", "from strain", "Length of the run instead of strain; required for `rest`"},

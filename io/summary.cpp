@@ -124,6 +124,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["steps"] = summary.steps;
   json["strain"] = summary.strain;
   json["stopped_by"] = summary.stopped_by;
+  json["warnings"] = summary.warnings;
   with_error("relative_viscosity", summary.relative_viscosity);
   with_error("wall_relative_viscosity", summary.wall_relative_viscosity);
   with_error("bulk_relative_viscosity", summary.bulk_relative_viscosity);

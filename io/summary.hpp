@@ -50,6 +50,7 @@ struct Summary {
   double mlups = none;                ///< million lattice node updates per second
   std::int64_t threads = 0;
   std::int64_t bytes_peak = 0;        ///< largest memory of the process
+  std::vector<std::string> warnings;  ///< of settings close to a stability limit
   std::string stopped_by;             ///< "end", "interrupt", "guard" ...
 };
 

@@ -1,6 +1,9 @@
 #include "physics/stability_limits.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace corpuscle {
@@ -8,7 +11,50 @@ namespace {
 
 const double speed_of_sound = 1 / std::sqrt(3.0);
 
+/// Measured in flow at phi_eff = 0.45, r = 5 and edge 1, tau = 1 (`corpuscle stability`, docs/stability.md has each number), and relative to them the limits at tau = 0.6 and 2.
+struct Row {
+  StiffnessLimits limits;
+  double at_small_tau, at_large_tau;
+};
+// A new vertex update needs a case here; until it has one it is held to the limits of `averaged`.
+Row measured(VertexUpdate update, int delta_kernel) {
+  if (update == VertexUpdate::euler) {
+    if (delta_kernel == 2) return {{0.02, 0.02, 0.02, 1}, 1, 1};
+    if (delta_kernel == 3) return {{0.02, 0.02, 0.02, 1}, 1, 1};
+    return {{10, 12, 2, 10}, 1, 1};
+  }
+  if (delta_kernel == 2) return {{10, 12, 1, 10}, 0.4, 0.3};
+  if (delta_kernel == 3) return {{10, 12, 2, 10}, 0.7, 0.5};
+  return {{10, 12, 2, 10}, 0.7, 0.5};
+}
+
+/// Between the measured relaxation times the limits over eta_0 change by powers of eta_0; outside they are those of the nearest one, for large tau in lattice units: there
+/// inertia sets the limit, not viscosity.
+double tau_factor(const Row& row, double relaxation_time) {
+  const double eta = relaxation_time - 0.5, small = 0.1, reference = 0.5, large = 1.5;
+  const auto between = [](double x, double x0, double y0, double x1, double y1) { return y0 * std::pow(y1 / y0, std::log(x / x0) / std::log(x1 / x0)); };
+  if (eta <= small) return row.at_small_tau;
+  if (eta <= reference) return between(eta, small, row.at_small_tau, reference, 1);
+  if (eta <= large) return between(eta, reference, 1, large, row.at_large_tau);
+  return row.at_large_tau * large / eta;
+}
+
 }  // namespace
+
+StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
+  const Row row = measured(accuracy.vertex_update, accuracy.delta_kernel);
+  const double factor = tau_factor(row, accuracy.relaxation_time);
+  return {factor * row.limits.shear, factor * row.limits.dilation, factor * row.limits.bending, factor * row.limits.contact};
+}
+
+double stiffness_load(const StiffnessLimits& limits, double edge, double shear, double dilation, double bending) {
+  return shear / limits.shear + dilation / limits.dilation + bending / (limits.bending * edge * edge);
+}
+
+double volume_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.area / (2 * speed_of_sound * cell.volume); }
+double area_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.squared_curvature / (2 * speed_of_sound); }
+double volume_modulus(const CellTypeLattice& cell, double response) { return response / volume_response(cell, 1); }
+double area_modulus(const CellTypeLattice& cell, double response) { return response / area_response(cell, 1); }
 
 double squared_curvature(const Mesh& mesh) {
   std::vector<Vector3> gradient(mesh.vertices.size(), Vector3::Zero());
@@ -31,9 +77,27 @@ double mean_edge(const Mesh& mesh) {
   return sum / double(edges.size());
 }
 
-double volume_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.area / (2 * speed_of_sound * cell.volume); }
-double area_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.squared_curvature / (2 * speed_of_sound); }
-double volume_modulus(const CellTypeLattice& cell, double response) { return response / volume_response(cell, 1); }
-double area_modulus(const CellTypeLattice& cell, double response) { return response / area_response(cell, 1); }
+void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
+  const StiffnessLimits limits = stiffness_limits(problem.accuracy);
+  const double eta = lattice.viscosity;
+  const auto add = [&](const std::string& name, double value, double limit, const std::string& way_out) {
+    lattice.margins.push_back({name, value, limit});
+    if (value > stability_margin * limit * (1 + 1e-8) && value <= limit * (1 + 1e-8))
+      lattice.warnings.push_back(fmt::format("{} is at {:.0f} % of its measured stability limit (docs/stability.md): {}", name, 100 * value / limit, way_out));
+  };
+  for (std::size_t i = 0; i < lattice.cells.size(); ++i) {
+    const CellTypeLattice& cell = lattice.cells[i];
+    const MembraneModuli& m = cell.moduli;
+    add(fmt::format("membrane stiffness of {}", cell.name), stiffness_load(limits, cell.edge, m.shear / eta, m.area_dilation / eta, m.bending / eta), 1,
+        "lower accuracy.shear_modulus, or let the program choose it");
+    if (m.volume > 0) add(fmt::format("volume force of {}", cell.name), volume_response(cell, m.volume), stable_volume_response, fmt::format("lower cells.{}.membrane.volume", i));
+    if (m.global_area > 0)
+      add(fmt::format("area force of {}", cell.name), area_response(cell, m.global_area), stable_area_response, fmt::format("lower cells.{}.membrane.global_area", i));
+    if (cell.edge < finest_edge * (1 - 1e-3) || cell.edge > coarsest_edge * (1 + 1e-3))
+      lattice.warnings.push_back(fmt::format("The mesh of {} has edges of {:.3g} lattice units on average; stability was measured for {} to {} only: change accuracy.subdivision",
+                                             cell.name, cell.edge, finest_edge, coarsest_edge));
+  }
+  if (lattice.contact_strength > 0) add("contact stiffness", lattice.contact_strength / eta, limits.contact, "lower contact.strength");
+}
 
 }  // namespace corpuscle

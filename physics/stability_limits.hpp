@@ -1,14 +1,33 @@
-// What is stable: the measured limits that scenes are checked against (docs/stability.md, `corpuscle stability`).
+// What is stable: the measured limits that scenes are checked against (docs/stability.md; measured by `corpuscle stability`).
 #pragma once
+#include <string>
+#include <vector>
+
 #include "physics/mesh.hpp"
 #include "physics/units.hpp"
 
 namespace corpuscle {
 
-/// Mean over the surface of (2H)^2, H the mean curvature: sum over vertices |dA/dx_v|^2 N/A^2.
-double squared_curvature(const Mesh& mesh);
-/// Mean length of the edges.
-double mean_edge(const Mesh& mesh);
+/// Fraction of a measured limit up to which settings are chosen by default and accepted silently; up to the limit they are accepted with a warning, beyond it refused.
+inline constexpr double stability_margin = 0.8;
+
+/// Largest stable moduli over the viscosity eta_0, each alone, for a mesh edge of 1 lattice unit (bending: kappa_B/edge^2).
+struct StiffnessLimits {
+  double shear = 0;     ///< kappa_S/eta_0
+  double dilation = 0;  ///< kappa_alpha/eta_0
+  double bending = 0;   ///< kappa_B/(eta_0 edge^2)
+  double contact = 0;   ///< kappa_int/eta_0
+};
+StiffnessLimits stiffness_limits(const AccuracySpec& accuracy);
+
+/// Largest stable responses of the global terms (below).
+inline constexpr double stable_volume_response = 0.8, stable_area_response = 0.8;
+/// Mean edges in lattice units for which limits were measured.
+inline constexpr double finest_edge = 0.4, coarsest_edge = 2.5;
+
+/// How much of the stable range a membrane uses: shear/limit + dilation/limit + bending/(limit edge^2), moduli over eta_0. Stable up to 1: the largest eigenvalue of a sum of
+/// stiffness matrices is at most the sum of theirs.
+double stiffness_load(const StiffnessLimits& limits, double edge, double shear, double dilation, double bending);
 
 /// Response of the fluid to the global terms in one step. A normal displacement d of the whole surface raises the pressure by kappa_V A d/V_0; the fluid answers like a
 /// sound wave, with the velocity p/(2 rho c_s): the response is kappa_V A/(2 c_s V_0). The area term has the pressure kappa_A (2H)^2 d: kappa_A (2H)^2/(2 c_s).
@@ -17,5 +36,12 @@ double area_response(const CellTypeLattice& cell, double modulus);
 /// The moduli that have a given response.
 double volume_modulus(const CellTypeLattice& cell, double response);
 double area_modulus(const CellTypeLattice& cell, double response);
+
+/// Mean over the surface of (2H)^2, H the mean curvature: sum over vertices |dA/dx_v|^2 N/A^2.
+double squared_curvature(const Mesh& mesh);
+double mean_edge(const Mesh& mesh);
+
+/// Where a scene stands against all limits, and a warning for each that it comes close to. Needs the moduli.
+void set_stability_margins(const Problem& problem, LatticeParameters& lattice);
 
 }  // namespace corpuscle

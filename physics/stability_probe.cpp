@@ -15,9 +15,9 @@ constexpr double displacement = 1e-3;    // small against every length, large ag
 constexpr double hopeless = 1e4;         // growth of the jitter after which nothing more can be learnt
 constexpr double quiet = 1e-7;           // and decay
 constexpr double slowest_growth = 3e-6;  // per step: runs last up to a million steps
-// In flow, jitter relative to gamma_dot r. Resolved motion has about gamma_dot: 1e-3. Growth counts from `suspicious` on; `drowned` is no flow any more.
-constexpr double suspicious = 0.03, drowned = 1;
-constexpr double doubling = 0.7;         // growth over the last half of a probe that isn't chance
+// In flow, jitter relative to gamma_dot r. Resolved motion has about gamma_dot, below 1e-3. Growth counts from `suspicious` on; `drowned` is no flow any more.
+constexpr double suspicious = 0.003, drowned = 1;
+constexpr double chance = 1.1;           // growth over the last half of a probe (log 3) that resolved motion may have
 
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
@@ -119,7 +119,7 @@ StabilityVerdict probe_in_flow(const Problem& problem, const LatticeParameters& 
   verdict.growth_rate = late_slope(jitter) / double(window);
   const double growth = verdict.growth_rate * double(verdict.steps) / 2;
   if (jitter.back() > drowned) verdict.reason = "velocity noise above the shear velocity";
-  else if (jitter.back() > suspicious && growth > doubling) verdict.reason = "velocity noise grows";
+  else if (jitter.back() > suspicious && growth > chance) verdict.reason = "velocity noise grows";
   else {
     verdict.stable = true;
     verdict.reason = "velocity noise stays small";

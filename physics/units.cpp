@@ -19,27 +19,11 @@ const double speed_of_sound = 1 / std::sqrt(3.0);
 constexpr double tolerance = 1e-8;         // limits are met to rounding: 1.2/6 isn't 0.2 in binary
 constexpr double stiffness_at_rest = 0.25; // kappa_S / eta_0 where no flow sets it: soft, and well inside the limit
 constexpr double penalty = 6;              // kappa_A / eta_0: 1 at tau = 1 (docs/theory/model.md, typical values)
-// A cell that breathes pushes sound waves: the pressure of a normal displacement d is kappa_V A d/V_0, the fluid answers with the velocity p/(2 rho c_s), so a step is stable
-// only for kappa_V A/(2 c_s V_0) well below 1. Measured at phi_eff = 0.45, averaged update: 0.8 is stable, 1.1 is not.
-constexpr double stable_volume = 0.8, default_volume = 0.5;
+constexpr double default_volume = 0.5, largest_default_area = 0.5;  // responses (physics/stability_limits.hpp), well inside the limits
 constexpr double packable = 0.78;          // largest phi that deformable cells reach by growing (docs/theory/model.md: 0.75 is needed)
 constexpr double packable_effective = 0.92;
 constexpr double most_nodes = 2e9;         // 32-bit node index
 constexpr double smallest_box = 4;         // nodes; below it the kernels' halo is wider than the box
-
-/// Largest kappa_S and kappa_alpha over eta_0 that stay stable in a dense suspension (phi_eff = 0.45, perf/stability_dense.sh; 1.2 is an
-/// estimate, docs/theory/model.md). With the Euler update the kernels that see staggered momenta (2 and 3 points) allow much less.
-struct StiffnessLimits {
-  double shear, dilation;
-};
-StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
-  if (accuracy.vertex_update == VertexUpdate::averaged) return {1.2, 6};
-  switch (accuracy.delta_kernel) {
-    case 2: return {0.1, 0.1};
-    case 3: return {0.6, 0.6};
-    default: return {1.2, 4};
-  }
-}
 
 /// Rounded to five digits, never beyond `value`: a limit that a message offers must itself be accepted.
 std::string at_most(double value) {
@@ -178,19 +162,20 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
   }
 }
 
-/// Chooses kappa_S and the shear rate together: the capillary number ties one to the other, every limit bounds both.
+/// What is unstable is refused, or warned of where the scene insists (accuracy.allow_unstable).
+void refuse_unstable(const Problem& problem, LatticeParameters& lattice, const std::string& message) {
+  if (!problem.accuracy.allow_unstable) throw InputError(message);
+  lattice.warnings.push_back(message + " (accepted, because accuracy.allow_unstable = true)");
+}
+
+/// Chooses kappa_S and the shear rate together: the capillary number ties one to the other, every limit bounds both. By default stability is used up to `stability_margin`;
+/// values that the scene fixes are refused beyond the measured limits only.
 class ShearRateChoice {
  public:
   ShearRateChoice(const Problem& problem, LatticeParameters& lattice) : p_(problem), l_(lattice) {
     if (p_.flow.capillary_number) ca_ = *p_.flow.capillary_number;
     else if (p_.flow.capillary_number_G) ca_ = *p_.flow.capillary_number_G / 3;
-    for (const CellSpec& spec : p_.cells) {
-      stiffest_ = std::max(stiffest_, spec.relative_stiffness);
-      if (spec.membrane.law == StrainLawKind::skalak) dilation_ = std::max(dilation_, spec.relative_stiffness * spec.membrane.area_dilation);
-    }
-    for (std::size_t i = 0; i < p_.cells.size(); ++i) {
-      if (p_.cells[i].membrane.volume.value_or(0) > 0) modulus_by_volume_ = std::min(modulus_by_volume_, largest_modulus_by_volume(i));
-    }
+    for (std::size_t i = 0; i < p_.cells.size(); ++i) modulus_.push_back(moduli_limits(i));
   }
 
   /// Returns kappa_S of the scene; 0 without cells.
@@ -200,7 +185,7 @@ class ShearRateChoice {
     double kappa = cells ? p_.accuracy.shear_modulus.value_or(0) : 0;
     if (kappa > 0) check_modulus(kappa);
     if (p_.flow.kind == FlowKind::rest) {
-      return !cells || kappa > 0 ? kappa : std::min(stiffness_at_rest * eta, largest_modulus());
+      return !cells || kappa > 0 ? kappa : std::min(stiffness_at_rest * eta, stability_margin * largest_modulus());
     }
     velocity_per_rate_ = l_.nodes[2] / (p_.flow.kind == FlowKind::shear ? 2.0 : 4.0);  // wall speed; centre-line speed gamma_w H/4
     add("reynolds_number_max", p_.flow.reynolds_number_max * eta / (l_.radius * l_.radius));
@@ -210,14 +195,12 @@ class ShearRateChoice {
     } else if (cells) {
       if (!(ca_ > 0)) throw InputError("flow.capillary_number is missing: cells in a flow need it, a number > 0 such as 0.081 (or flow.capillary_number_G)");
       const double rate_per_modulus = ca_ / (eta * l_.radius);
-      add("membrane stability", rate_per_modulus * limits_.shear * eta / stiffest_);
-      if (dilation_ > 0) add("area dilation stability", rate_per_modulus * limits_.dilation * eta / dilation_);
-      if (std::isfinite(modulus_by_volume_)) add("volume stability", rate_per_modulus * modulus_by_volume_);
+      for (const auto& [name, modulus] : smallest_limits()) add_stability(name, rate_per_modulus * modulus);
       if (kappa > 0) fixed("shear_modulus", kappa, rate_per_modulus * kappa);
     }
     if (p_.accuracy.shear_rate) fixed("shear_rate", *p_.accuracy.shear_rate, *p_.accuracy.shear_rate);
     std::stable_sort(l_.limits.begin(), l_.limits.end(), [](const auto& a, const auto& b) { return a.shear_rate < b.shear_rate; });
-    if (!fixed_by_.empty()) {  // it may exceed the next limit by rounding
+    if (!fixed_by_.empty()) {  // it may exceed the next limit by rounding, or lie in the margin of stability
       std::stable_partition(l_.limits.begin(), l_.limits.end(), [&](const auto& limit) { return limit.name == fixed_by_; });
     }
     l_.shear_rate = l_.limits.front().shear_rate;
@@ -228,65 +211,113 @@ class ShearRateChoice {
   }
 
  private:
-  void add(const char* name, double rate) { l_.limits.push_back({name, rate}); }
+  /// Largest stable kappa_S of the scene as a part of a cell type bounds it; infinite where that part doesn't depend on kappa_S.
+  struct ModulusLimit {
+    double membrane, volume, area, contact;
+  };
 
-  double largest_modulus() const {
-    const double shear = std::min(limits_.shear * l_.viscosity / stiffest_, modulus_by_volume_);
-    return dilation_ > 0 ? std::min(shear, limits_.dilation * l_.viscosity / dilation_) : shear;
+  void add(const char* name, double rate) {
+    l_.limits.push_back({name, rate});
+    hard_.push_back({name, rate});
+  }
+  /// A stability limit is used up to its margin, but refuses only what is beyond it.
+  void add_stability(const char* name, double rate) {
+    l_.limits.push_back({name, stability_margin * rate});
+    stability_.push_back({name, rate});
   }
 
-  /// Largest kappa_S of the scene for which the volume force that type i asks for is stable.
-  double largest_modulus_by_volume(std::size_t i) const {
+  double load_per_modulus(std::size_t i) const {
+    const CellSpec& spec = p_.cells[i];
+    const double relative = spec.relative_stiffness / l_.viscosity;
+    return stiffness_load(stiffness_, l_.cells[i].edge, relative, relative * dilation_ratio(spec), relative * bending_ratio(i));
+  }
+  static double dilation_ratio(const CellSpec& spec) { return spec.membrane.law == StrainLawKind::skalak ? spec.membrane.area_dilation : 0; }
+  double bending_ratio(std::size_t i) const { return p_.cells[i].membrane.bending * l_.cells[i].radius * l_.cells[i].radius; }
+
+  ModulusLimit moduli_limits(std::size_t i) const {
+    const CellSpec& spec = p_.cells[i];
     const CellTypeLattice& cell = l_.cells[i];
-    return volume_modulus(cell, stable_volume) * cell.radius / (*p_.cells[i].membrane.volume * p_.cells[i].relative_stiffness);
+    const double none = std::numeric_limits<double>::infinity();
+    const double volume = spec.membrane.volume.value_or(0) * spec.relative_stiffness / cell.radius, area = spec.membrane.global_area.value_or(0) * spec.relative_stiffness;
+    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stable_volume_response) / volume : none, area > 0 ? area_modulus(cell, stable_area_response) / area : none,
+            p_.contact.enabled ? stiffness_.contact * l_.viscosity / p_.contact.strength : none};
   }
 
-  void check_modulus(double kappa) const {
-    const double shear = limits_.shear * l_.viscosity / stiffest_;
-    if (kappa > shear * (1 + tolerance)) {
-      throw InputError(fmt::format("accuracy.shear_modulus = {} is unstable with accuracy.relaxation_time = {}{}: it must be <= {}", kappa, l_.relaxation_time,
-                                   stiffest_ != 1 ? fmt::format(" and relative_stiffness = {}", stiffest_) : "", at_most(shear)));
+  /// The smallest of each kind, where there is one.
+  std::vector<std::pair<const char*, double>> smallest_limits() const {
+    std::vector<std::pair<const char*, double>> limits;
+    const std::pair<const char*, double ModulusLimit::*> kinds[] = {{"membrane stability", &ModulusLimit::membrane}, {"volume stability", &ModulusLimit::volume},
+                                                                    {"area stability", &ModulusLimit::area}, {"contact stability", &ModulusLimit::contact}};
+    for (const auto& [name, member] : kinds) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const ModulusLimit& limit : modulus_) least = std::min(least, limit.*member);
+      if (std::isfinite(least)) limits.emplace_back(name, least);
     }
+    return limits;
+  }
+  double largest_modulus() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& limit : smallest_limits()) least = std::min(least, limit.second);
+    return least;
+  }
+
+  void check_modulus(double kappa) {
+    const double allowed = kappa * (1 - tolerance);
+    const auto too_stiff = [&](const std::string& key, double value, double largest, const char* instead) {
+      refuse_unstable(p_, l_, fmt::format("{} = {} is unstable with accuracy.shear_modulus = {}: it must be <= {}; {}", key, value, kappa, at_most(largest), instead));
+    };
     for (std::size_t i = 0; i < p_.cells.size(); ++i) {
       const CellSpec& spec = p_.cells[i];
-      if (spec.membrane.volume.value_or(0) > 0 && kappa > largest_modulus_by_volume(i) * (1 + tolerance)) {
-        throw InputError(fmt::format("cells.{}.membrane.volume = {} is unstable with accuracy.shear_modulus = {}: it must be <= {}; or leave it out for a stable default", i,
-                                     *spec.membrane.volume, kappa, at_most(*spec.membrane.volume * largest_modulus_by_volume(i) / kappa)));
+      const std::string at = fmt::format("cells.{}.membrane.", i);
+      const ModulusLimit& limit = modulus_[i];
+      if (allowed > limit.membrane) {
+        // Which modulus to lower: the one with the largest share, if the others leave room for it.
+        const double relative = kappa * spec.relative_stiffness / l_.viscosity, edge = l_.cells[i].edge;
+        const double shear = stiffness_load(stiffness_, edge, relative, 0, 0), dilation = stiffness_load(stiffness_, edge, 0, relative * dilation_ratio(spec), 0);
+        const double bending = stiffness_load(stiffness_, edge, 0, 0, relative * bending_ratio(i));
+        if (dilation > std::max(shear, bending) && shear + bending < 1)
+          too_stiff(at + "area_dilation", spec.membrane.area_dilation, spec.membrane.area_dilation * (1 - shear - bending) / dilation, "or lower the modulus");
+        else if (bending > std::max(shear, dilation) && shear + dilation < 1)
+          too_stiff(at + "bending", spec.membrane.bending, spec.membrane.bending * (1 - shear - dilation) / bending, "or lower the modulus");
+        else
+          refuse_unstable(p_, l_, fmt::format("accuracy.shear_modulus = {} is unstable with accuracy.relaxation_time = {}{}: it must be <= {}", kappa, l_.relaxation_time,
+                                              spec.relative_stiffness != 1 ? fmt::format(" and cells.{}.relative_stiffness = {}", i, spec.relative_stiffness) : "",
+                                              at_most(limit.membrane)));
       }
-      if (spec.membrane.law != StrainLawKind::skalak) continue;
-      const double dilation = limits_.dilation * l_.viscosity / (kappa * spec.relative_stiffness);
-      if (spec.membrane.area_dilation > dilation * (1 + tolerance)) {
-        throw InputError(fmt::format("cells.{}.membrane.area_dilation = {} is unstable with accuracy.shear_modulus = {}: it must be <= {}; or lower the modulus", i,
-                                     spec.membrane.area_dilation, kappa, at_most(dilation)));
-      }
+      if (allowed > limit.volume) too_stiff(at + "volume", *spec.membrane.volume, *spec.membrane.volume * limit.volume / kappa, "or leave it out for a stable default");
+      if (allowed > limit.area) too_stiff(at + "global_area", *spec.membrane.global_area, *spec.membrane.global_area * limit.area / kappa, "or leave it out for a stable default");
     }
+    if (!modulus_.empty() && allowed > modulus_[0].contact) too_stiff("contact.strength", p_.contact.strength, p_.contact.strength * modulus_[0].contact / kappa, "or lower the modulus");
   }
 
   /// A key of [accuracy] fixes the rate: it becomes the deciding limit, unless another limit is lower, which is an error.
   void fixed(const char* key, double value, double rate) {
-    const auto lowest = *std::min_element(l_.limits.begin(), l_.limits.end(), [](const auto& a, const auto& b) { return a.shear_rate < b.shear_rate; });
+    const auto lowest = *std::min_element(hard_.begin(), hard_.end(), [](const auto& a, const auto& b) { return a.shear_rate < b.shear_rate; });
+    const auto too_fast = [&](const ShearRateLimit& limit, const std::string& way_out) {
+      return fmt::format("accuracy.{} = {} gives the shear rate {:.4g}, above the largest that {} allows ({:.4g}): it must be <= {}{}", key, value, rate, limit.name,
+                         limit.shear_rate, at_most(value * limit.shear_rate / rate), way_out);
+    };
     if (rate > lowest.shear_rate * (1 + tolerance)) {
       std::string way_out;
       if (lowest.name == "reynolds_number_max") way_out = "; or raise flow.reynolds_number_max to " + at_least(p_.flow.reynolds_number_max * rate / lowest.shear_rate);
       const double mach = rate * velocity_per_rate_ / speed_of_sound;
-      if (lowest.name == "area dilation stability") {
-        way_out = fmt::format("; or lower area_dilation (kappa_alpha/kappa_S = {} of the stiffest type) to {}", dilation_, at_most(dilation_ * lowest.shear_rate / rate));
-      }
       if (lowest.name == "mach_max" && mach <= 0.3) way_out = "; or raise accuracy.mach_max to " + at_least(mach);
-      throw InputError(fmt::format("accuracy.{} = {} gives the shear rate {:.4g}, above the largest that {} allows ({:.4g}): it must be <= {}{}", key, value, rate, lowest.name,
-                                   lowest.shear_rate, at_most(value * lowest.shear_rate / rate), way_out));
+      throw InputError(too_fast(lowest, way_out));
     }
-    add(key, rate);
+    if (!p_.accuracy.shear_modulus) {  // else check_modulus has told
+      for (const ShearRateLimit& limit : stability_)
+        if (rate > limit.shear_rate * (1 + tolerance)) refuse_unstable(p_, l_, too_fast(limit, ""));
+    }
+    l_.limits.push_back({key, rate});
     fixed_by_ = key;
   }
 
   const Problem& p_;
   LatticeParameters& l_;
-  StiffnessLimits limits_ = stiffness_limits(p_.accuracy);
+  StiffnessLimits stiffness_ = stiffness_limits(p_.accuracy);
+  std::vector<ModulusLimit> modulus_;  // of each cell type
   double ca_ = 0;
-  double stiffest_ = 0;  // largest relative stiffness
-  double dilation_ = 0;  // largest kappa_alpha / kappa_S of the scene
-  double modulus_by_volume_ = std::numeric_limits<double>::infinity();  // kappa_S that the stiffest given volume force allows
+  std::vector<ShearRateLimit> hard_, stability_;  // what may not be exceeded; what may be with accuracy.allow_unstable
   double velocity_per_rate_ = 0;
   std::string fixed_by_;  // key of [accuracy] that fixes the rate
 };
@@ -303,7 +334,7 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     m.bending_constant = spec.bending_constant;
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
-    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? penalty * lattice.viscosity : 0;
+    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, largest_default_area)) : 0;
     m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, default_volume);
   }
   if (problem.contact.enabled && kappa > 0) {
@@ -347,6 +378,7 @@ LatticeParameters to_lattice(const Problem& problem) {
   set_cells(problem, lattice);
   const double kappa = ShearRateChoice(problem, lattice).choose();
   set_moduli(problem, kappa, lattice);
+  set_stability_margins(problem, lattice);
   set_flow(problem, lattice);
   set_duration(problem, lattice);
   return lattice;

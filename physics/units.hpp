@@ -26,6 +26,13 @@ struct ShearRateLimit {
   double shear_rate;     ///< largest allowed
 };
 
+/// Where a scene stands against a measured stability limit (physics/stability_limits.hpp): unstable beyond `limit`.
+struct StabilityMargin {
+  std::string name;  ///< "membrane stiffness of red_cell", "contact stiffness", ...
+  double value = 0;
+  double limit = 0;
+};
+
 /// What one cell type costs and fills; filled from its mesh.
 struct CellTypeLattice {
   std::string name;
@@ -66,6 +73,8 @@ struct LatticeParameters {
   std::int64_t snapshot_every = 0;     ///< steps; 0: none
   std::vector<CellTypeLattice> cells;
   std::vector<ShearRateLimit> limits;  ///< all limits, the deciding (smallest) one first
+  std::vector<StabilityMargin> margins;
+  std::vector<std::string> warnings;   ///< for the user: settings that are close to a stability limit, or beyond it with accuracy.allow_unstable
 };
 
 /// Chooses the largest shear rate that every limit allows and converts all quantities.

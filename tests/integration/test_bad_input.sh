@@ -84,7 +84,7 @@ printf '%s\n[flow]\nkind = "rest"\n' "$box" | scene rest_without_steps 'run.step
 printf '[box]\nsize = [6, 1.5, 6]\n%s\n%s\n' "$flow" "$cells" | scene narrow_box 'box.size\[1\] = 1.5.*>= 2'
 printf '%s\n%s\n[[cells]]\nvolume_fraction = 0.9\n' "$box" "$flow" | scene too_full 'cells.0.volume_fraction = 0.9.*0.78'
 printf '%s\n%s\n[[cells]]\ncount = 130\n' "$box" "$flow" | scene too_many 'cells.0.count = 130.*pack'
-printf '%s\n%s\n%s\n[accuracy]\nshear_modulus = 0.5\n' "$box" "$flow" "$cells" | scene unstable_membrane 'accuracy.shear_modulus = 0.5.*<= 0.2'
+printf '%s\n%s\n%s\n[accuracy]\nshear_modulus = 5\n' "$box" "$flow" "$cells" | scene unstable_membrane 'accuracy.shear_modulus = 5 .*must be <= '
 
 # Files named in the scene
 printf 'OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n' >"$work/open.off"

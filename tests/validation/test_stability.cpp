@@ -1,0 +1,67 @@
+// Measured stability limits are real: the scheme is quiet well below them and breaks well above.
+#include "physics/packing.hpp"
+#include "physics/placement.hpp"
+#include "physics/stability_limits.hpp"
+#include "physics/stability_probe.hpp"
+#include "tests/catch.hpp"
+
+using namespace corpuscle;
+
+namespace {
+
+/// One red cell off the nodes of a periodic box at rest, kappa_S in units of eta_0, no other in-plane modulus.
+StabilityVerdict at_rest(int delta_kernel, VertexUpdate update, double shear) {
+  Problem problem;
+  problem.accuracy.radius = 5;
+  problem.accuracy.delta_kernel = delta_kernel;
+  problem.accuracy.vertex_update = update;
+  problem.accuracy.precision = Precision::double_precision;
+  problem.box.size = {4, 4, 4};
+  problem.box.walls = false;
+  problem.flow.kind = FlowKind::rest;
+  problem.run.steps = 1;
+  problem.contact.enabled = false;
+  problem.cells.emplace_back().name = "red_cell";
+  problem.cells[0].count = 1;
+  LatticeParameters lattice = to_lattice(problem);
+  auto& moduli = lattice.cells[0].moduli;
+  moduli.shear = shear * lattice.viscosity;
+  moduli.area_dilation = moduli.bending = 0;
+  const auto types = make_cell_types(problem, lattice);
+  const auto positions = place_mesh(types[0].reference, Vector3(10.13, 10.29, 10.41), rotation_to_axis({0.3, 0.5, 0.8}));
+  return probe_at_rest(problem, lattice, types, positions);
+}
+
+}  // namespace
+
+TEST_CASE("Euler steps feed the staggered momentum at a rate proportional to the stiffness; the mean of two steps doesn't", "[stability]") {
+  // docs/theory/model.md: x, m ~ lambda^t with lambda = -1 - s^2 k/2, so the rate s^2 k/2 is proportional to k. The next order, (s^2 k)^2/8 relative to s^2 k/2, is below 1e-3
+  // here; modes of different s mix while the fastest takes over: 15 %.
+  const auto soft = at_rest(2, VertexUpdate::euler, 0.2), stiff = at_rest(2, VertexUpdate::euler, 0.4);
+  CHECK_FALSE(soft.stable);
+  CHECK_FALSE(stiff.stable);
+  CHECK(stiff.growth_rate / soft.growth_rate == Approx(2).epsilon(0.15));
+  for (const double shear : {0.2, 0.4, 4.0}) CHECK(at_rest(2, VertexUpdate::averaged, shear).stable);
+}
+
+TEST_CASE("In dense flow half of the stiffness limit stays quiet, twice of it does not", "[stability]") {
+  Problem problem;
+  problem.accuracy.radius = 5;
+  problem.box.size = {4, 4, 4};
+  problem.flow.capillary_number = 1;
+  problem.cells.emplace_back().name = "red_cell";
+  problem.cells[0].effective_volume_fraction = 0.45;
+  const LatticeParameters soft = to_lattice(problem);
+  const auto positions = place_cells(problem, soft, make_cell_types(problem, soft));
+  const auto verdict = [&](double share) {
+    LatticeParameters lattice = soft;
+    auto& m = lattice.cells[0].moduli;
+    const double stiffer = share / soft.margins.at(0).value;
+    m.shear *= stiffer;
+    m.area_dilation *= stiffer;
+    m.bending *= stiffer;
+    return probe_in_flow(problem, lattice, make_cell_types(problem, lattice), positions, {1200, 12});
+  };
+  CHECK(verdict(0.5).stable);
+  CHECK_FALSE(verdict(2).stable);
+}
