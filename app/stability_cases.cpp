@@ -128,6 +128,13 @@ void precision(List& list, int u) {
   list.add("precision", "eta_0", s, modulus, set_red_cell, "single precision");
 }
 
+/// The same at a finer resolution, where bending has a larger share.
+void resolution(List& list, int u) {
+  ProbeScene s = soft_in_flow(3, u);
+  s.radius = 8;
+  list.add("red_cell", "eta_0", s, modulus, set_red_cell, "r = 8");
+}
+
 void capillary_numbers(List& list) {
   ProbeScene s = soft_in_flow(3, 0);
   s.steps = 6000;
@@ -173,6 +180,7 @@ std::vector<StabilityCase> stability_cases() {
     stiffness_at_rest(list, u);
     global_terms(list, u);
     precision(list, u);
+    resolution(list, u);
     if (u == 0) {  // what has to do with the fluid, or with large deformation, doesn't depend on the update
       capillary_numbers(list);
       fluid(list);

@@ -11,21 +11,29 @@ namespace {
 
 const double speed_of_sound = 1 / std::sqrt(3.0);
 
-/// Measured in flow at phi_eff = 0.45, r = 5 and edge 1, tau = 1 (`corpuscle stability`, docs/stability.md has each number), and relative to them the limits at tau = 0.6 and 2.
+/// Measured in flow at phi_eff = 0.45, r = 5, edge 1, tau = 1: the largest stable values of `corpuscle stability` (docs/stability.md), and what the limit of a red cell's
+/// membrane is at tau = 0.6 and 2, relative to tau = 1.
 struct Row {
   StiffnessLimits limits;
   double at_small_tau, at_large_tau;
 };
 // A new vertex update needs a case here; until it has one it is held to the limits of `averaged`.
 Row measured(VertexUpdate update, int delta_kernel) {
-  if (update == VertexUpdate::euler) {
-    if (delta_kernel == 2) return {{0.02, 0.02, 0.02, 1}, 1, 1};
-    if (delta_kernel == 3) return {{0.02, 0.02, 0.02, 1}, 1, 1};
-    return {{10, 12, 2, 10}, 1, 1};
+  if (update == VertexUpdate::euler && delta_kernel != 4) return {{0.02, 0.02, 0.02, 1}, 1, 1};  // no stable value found: noise grows at any stiffness
+  switch (delta_kernel) {
+    case 2: return {{17.4, 14.7, 1, 10}, 0.42, 0.30};
+    case 3: return {{14.7, 16.0, 2, 10}, 0.71, 0.39};
+    default: return {{17.4, 19.0, 2, 10}, 0.92, 0.50};
   }
-  if (delta_kernel == 2) return {{10, 12, 1, 10}, 0.4, 0.3};
-  if (delta_kernel == 3) return {{10, 12, 2, 10}, 0.7, 0.5};
-  return {{10, 12, 2, 10}, 0.7, 0.5};
+}
+
+/// Limit of a red cell's membrane at other effective volume fractions, relative to 0.45 (3 points, averaged, kappa_int = kappa_S).
+double fraction_factor(double phi_effective) {
+  constexpr double phi[] = {0.2, 0.45, 0.66, 0.88}, factor[] = {1.30, 1, 0.65, 0.35};
+  if (phi_effective <= phi[0]) return factor[0];
+  for (int i = 1; i < 4; ++i)
+    if (phi_effective <= phi[i]) return factor[i - 1] + (factor[i] - factor[i - 1]) * (phi_effective - phi[i - 1]) / (phi[i] - phi[i - 1]);
+  return factor[3];
 }
 
 /// Between the measured relaxation times the limits over eta_0 change by powers of eta_0; outside they are those of the nearest one, for large tau in lattice units: there
@@ -41,9 +49,9 @@ double tau_factor(const Row& row, double relaxation_time) {
 
 }  // namespace
 
-StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
+StiffnessLimits stiffness_limits(const AccuracySpec& accuracy, double phi_effective) {
   const Row row = measured(accuracy.vertex_update, accuracy.delta_kernel);
-  const double factor = tau_factor(row, accuracy.relaxation_time);
+  const double factor = tau_factor(row, accuracy.relaxation_time) * fraction_factor(phi_effective);
   return {factor * row.limits.shear, factor * row.limits.dilation, factor * row.limits.bending, factor * row.limits.contact};
 }
 
@@ -78,7 +86,7 @@ double mean_edge(const Mesh& mesh) {
 }
 
 void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
-  const StiffnessLimits limits = stiffness_limits(problem.accuracy);
+  const StiffnessLimits limits = stiffness_limits(problem.accuracy, lattice.phi_effective);
   const double eta = lattice.viscosity;
   const auto add = [&](const std::string& name, double value, double limit, const std::string& way_out) {
     lattice.margins.push_back({name, value, limit});

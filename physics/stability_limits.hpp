@@ -18,7 +18,8 @@ struct StiffnessLimits {
   double bending = 0;   ///< kappa_B/(eta_0 edge^2)
   double contact = 0;   ///< kappa_int/eta_0
 };
-StiffnessLimits stiffness_limits(const AccuracySpec& accuracy);
+/// @param phi_effective effective volume fraction: crowded cells are less stable
+StiffnessLimits stiffness_limits(const AccuracySpec& accuracy, double phi_effective);
 
 /// Largest stable responses of the global terms (below).
 inline constexpr double stable_volume_response = 0.8, stable_area_response = 0.8;

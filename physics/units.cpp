@@ -314,7 +314,7 @@ class ShearRateChoice {
 
   const Problem& p_;
   LatticeParameters& l_;
-  StiffnessLimits stiffness_ = stiffness_limits(p_.accuracy);
+  StiffnessLimits stiffness_ = stiffness_limits(p_.accuracy, l_.phi_effective);
   std::vector<ModulusLimit> modulus_;  // of each cell type
   double ca_ = 0;
   std::vector<ShearRateLimit> hard_, stability_;  // what may not be exceeded; what may be with accuracy.allow_unstable

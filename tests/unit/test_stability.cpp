@@ -79,7 +79,7 @@ TEST_CASE("Bending, area and contact have limits of their own", "[stability]") {
   Problem problem = red_cells();
   problem.accuracy.shear_modulus = 0.01;
   const double eta = 1.0 / 6;
-  const StiffnessLimits limits = stiffness_limits(problem.accuracy);
+  const StiffnessLimits limits = stiffness_limits(problem.accuracy, 0);
   SECTION("bending") {
     problem.cells[0].membrane.bending = 2 * limits.bending * eta / 0.01 / 64;
     CHECK(complaint_lacks([&] { to_lattice(problem); }, {"cells.0.membrane.bending = ", "must be <= "}) == "");

@@ -46,7 +46,7 @@ std::string refusal(const Problem& problem) {
 double largest_load(const Problem& problem, const LatticeParameters& lattice) {
   double largest = 0;
   for (const auto& cell : lattice.cells)
-    largest = std::max(largest, stiffness_load(stiffness_limits(problem.accuracy), cell.edge, cell.moduli.shear / lattice.viscosity, cell.moduli.area_dilation / lattice.viscosity,
+    largest = std::max(largest, stiffness_load(stiffness_limits(problem.accuracy, lattice.phi_effective), cell.edge, cell.moduli.shear / lattice.viscosity, cell.moduli.area_dilation / lattice.viscosity,
                                                cell.moduli.bending / lattice.viscosity));
   return largest;
 }
