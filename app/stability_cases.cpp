@@ -94,16 +94,21 @@ void fractions_and_contact(List& list, int u) {
   list.add("kappa_B", "eta_0", soft_in_flow(3, u), bending, set_bending);
   list.add("kappa_A", "response", soft_in_flow(3, u), response, set_area);
   for (const double tau : {1.0, 0.6}) list.add("kappa_V", "response", soft_in_flow(3, u, tau), response, set_volume);
+  ProbeScene stiff = soft_in_flow(3, u);
+  stiff.dilation = 3;  // as in the paper's suspensions: breathing and dilation act together
+  list.add("kappa_V", "response", stiff, response, set_volume, "kappa_alpha = 3 eta_0");
+  list.add("kappa_A", "response", stiff, response, set_area, "kappa_alpha = 3 eta_0");
 }
 
 void stiffness_at_rest(List& list, int u) {
   for (const int kernel : kernels)
-    for (const double edge : {1.0, 0.4, 0.7, 1.5, 2.5}) {
+    for (const int frequency : {5, 13, 7, 3, 2}) {  // of the icosahedron: edges of r/frequency
       ProbeScene s = scene_of(Kind::at_rest, kernel, u);
-      s.edge = edge;
-      list.add("kappa_S", "eta_0", s, modulus, set_shear, fmt::format("edge = {:g}", edge));
-      list.add("kappa_alpha", "eta_0", s, modulus, set_dilation, fmt::format("edge = {:g}", edge));
-      if (edge == 1 || (kernel == 3 && edge != 0.4 && edge != 2.5)) list.add("kappa_B", "eta_0", s, bending, set_bending, fmt::format("edge = {:g}", edge));
+      s.edge = s.radius / frequency;
+      const std::string edge = fmt::format("edge = {:.2g}", s.edge);
+      list.add("kappa_S", "eta_0", s, modulus, set_shear, edge);
+      list.add("kappa_alpha", "eta_0", s, modulus, set_dilation, edge);
+      if (frequency == 5 || (kernel == 3 && frequency != 13 && frequency != 2)) list.add("kappa_B", "eta_0", s, bending, set_bending, edge);
     }
   for (const int kernel : kernels)
     for (const double tau : {1.0, 0.6, 2.0}) list.add("red_cell", "eta_0", scene_of(Kind::at_rest, kernel, u, tau), modulus, set_red_cell);

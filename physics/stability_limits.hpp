@@ -11,22 +11,21 @@ namespace corpuscle {
 /// Fraction of a measured limit up to which settings are chosen by default and accepted silently; up to the limit they are accepted with a warning, beyond it refused.
 inline constexpr double stability_margin = 0.8;
 
-/// Largest stable moduli over the viscosity eta_0, each alone, for a mesh edge of 1 lattice unit (bending: kappa_B/edge^2).
+/// Largest stable moduli over the viscosity eta_0, each alone (bending: kappa_B/edge), and largest stable responses of the global terms (below).
 struct StiffnessLimits {
   double shear = 0;     ///< kappa_S/eta_0
   double dilation = 0;  ///< kappa_alpha/eta_0
-  double bending = 0;   ///< kappa_B/(eta_0 edge^2)
+  double bending = 0;   ///< kappa_B/(eta_0 edge), edge in lattice units
   double contact = 0;   ///< kappa_int/eta_0
+  double volume = 0, area = 0;  ///< responses
 };
 /// @param phi_effective effective volume fraction: crowded cells are less stable
 StiffnessLimits stiffness_limits(const AccuracySpec& accuracy, double phi_effective);
 
-/// Largest stable responses of the global terms (below).
-inline constexpr double stable_volume_response = 0.8, stable_area_response = 0.8;
 /// Mean edges in lattice units for which limits were measured.
 inline constexpr double finest_edge = 0.4, coarsest_edge = 2.5;
 
-/// How much of the stable range a membrane uses: shear/limit + dilation/limit + bending/(limit edge^2), moduli over eta_0. Stable up to 1: the largest eigenvalue of a sum of
+/// How much of the stable range a membrane uses: shear/limit + dilation/limit + bending/(limit edge), moduli over eta_0. Stable up to 1: the largest eigenvalue of a sum of
 /// stiffness matrices is at most the sum of theirs.
 double stiffness_load(const StiffnessLimits& limits, double edge, double shear, double dilation, double bending);
 

@@ -19,7 +19,7 @@ const double speed_of_sound = 1 / std::sqrt(3.0);
 constexpr double tolerance = 1e-8;         // limits are met to rounding: 1.2/6 isn't 0.2 in binary
 constexpr double stiffness_at_rest = 0.25; // kappa_S / eta_0 where no flow sets it: soft, and well inside the limit
 constexpr double penalty = 6;              // kappa_A / eta_0: 1 at tau = 1 (docs/theory/model.md, typical values)
-constexpr double default_volume = 0.5, largest_default_area = 0.5;  // responses (physics/stability_limits.hpp), well inside the limits
+constexpr double default_response = 0.5;    // of volume and area forces (physics/stability_limits.hpp), well inside the limits; at most the margin of stability
 constexpr double packable = 0.78;          // largest phi that deformable cells reach by growing (docs/theory/model.md: 0.75 is needed)
 constexpr double packable_effective = 0.92;
 constexpr double most_nodes = 2e9;         // 32-bit node index
@@ -239,7 +239,7 @@ class ShearRateChoice {
     const CellTypeLattice& cell = l_.cells[i];
     const double none = std::numeric_limits<double>::infinity();
     const double volume = spec.membrane.volume.value_or(0) * spec.relative_stiffness / cell.radius, area = spec.membrane.global_area.value_or(0) * spec.relative_stiffness;
-    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stable_volume_response) / volume : none, area > 0 ? area_modulus(cell, stable_area_response) / area : none,
+    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stiffness_.volume) / volume : none, area > 0 ? area_modulus(cell, stiffness_.area) / area : none,
             p_.contact.enabled ? stiffness_.contact * l_.viscosity / p_.contact.strength : none};
   }
 
@@ -323,6 +323,7 @@ class ShearRateChoice {
 };
 
 void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice) {
+  const StiffnessLimits limits = stiffness_limits(problem.accuracy, lattice.phi_effective);
   for (std::size_t i = 0; i < problem.cells.size(); ++i) {
     const MembraneSpec& spec = problem.cells[i].membrane;
     CellTypeLattice& cell = lattice.cells[i];
@@ -334,8 +335,8 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     m.bending_constant = spec.bending_constant;
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
-    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, largest_default_area)) : 0;
-    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, default_volume);
+    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, std::min(default_response, stability_margin * limits.area))) : 0;
+    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, std::min(default_response, stability_margin * limits.volume));
   }
   if (problem.contact.enabled && kappa > 0) {
     lattice.contact_strength = problem.contact.strength * kappa;
