@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "io/scene_keys.hpp"
+#include "physics/stability_limits.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -125,6 +126,16 @@ void global_terms(List& list, int u) {
   for (const int kernel : kernels) add(kernel, 5, 1);
   add(3, 8, 1);
   add(3, 5, 2);
+  ProbeScene large = scene_of(Kind::at_rest, 3, u);
+  large.radius = 12;
+  large.set_red_cell(0.3);
+  list.add("kappa_V", "response", large, LimitSearch{0.7, 0.02, 100, 1.15}, set_volume, "r = 12");
+  for (const double tau : {1.0, 0.6}) {
+    ProbeScene flow = soft_in_flow(3, u, tau);
+    flow.radius = 8;
+    flow.steps = 1000;
+    list.add("kappa_V", "response", flow, LimitSearch{0.7, 0.02, 100, 1.2}, set_volume, "r = 8");
+  }
 }
 
 void precision(List& list, int u) {
@@ -168,6 +179,9 @@ void fluid(List& list) {
     auto& c = list.add("tau", "", s, LimitSearch{100, 1, 1e4, 1.15}, [](ProbeScene& at, double v) {
       at.relaxation_time = 0.5 + 1 / v;
       at.set_red_cell(1);
+      AccuracySpec accuracy;  // the default volume force of such a scene
+      accuracy.relaxation_time = at.relaxation_time;
+      at.volume = stability_margin * stable_response(accuracy);
     });
     c.conditions = fmt::format("in flow, 3 points, {}, {}, kappa_S = eta_0", list.updates[0], collision == CollisionKind::bgk ? "BGK" : "TRT");
     c.shown = [](double v) { return 0.5 + 1 / v; };

@@ -11,17 +11,18 @@ namespace corpuscle {
 /// Fraction of a measured limit up to which settings are chosen by default and accepted silently; up to the limit they are accepted with a warning, beyond it refused.
 inline constexpr double stability_margin = 0.8;
 
-/// Largest stable moduli over the viscosity eta_0, each alone (bending: kappa_B/edge), and largest stable responses of the global terms (below).
+/// Largest stable moduli over the viscosity eta_0, each alone (bending: kappa_B/edge).
 struct StiffnessLimits {
   double shear = 0;     ///< kappa_S/eta_0
   double dilation = 0;  ///< kappa_alpha/eta_0
   double bending = 0;   ///< kappa_B/(eta_0 edge), edge in lattice units
   double contact = 0;   ///< kappa_int/eta_0
-  double volume = 0, area = 0;  ///< responses
 };
 /// @param phi_effective effective volume fraction: crowded cells are less stable
 StiffnessLimits stiffness_limits(const AccuracySpec& accuracy, double phi_effective);
 
+/// Largest stable response of the volume and the area force (below).
+double stable_response(const AccuracySpec& accuracy);
 /// Mean edges in lattice units for which limits were measured.
 inline constexpr double finest_edge = 0.4, coarsest_edge = 2.5;
 

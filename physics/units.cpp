@@ -239,7 +239,7 @@ class ShearRateChoice {
     const CellTypeLattice& cell = l_.cells[i];
     const double none = std::numeric_limits<double>::infinity();
     const double volume = spec.membrane.volume.value_or(0) * spec.relative_stiffness / cell.radius, area = spec.membrane.global_area.value_or(0) * spec.relative_stiffness;
-    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stiffness_.volume) / volume : none, area > 0 ? area_modulus(cell, stiffness_.area) / area : none,
+    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stable_response(p_.accuracy)) / volume : none, area > 0 ? area_modulus(cell, stable_response(p_.accuracy)) / area : none,
             p_.contact.enabled ? stiffness_.contact * l_.viscosity / p_.contact.strength : none};
   }
 
@@ -323,10 +323,10 @@ class ShearRateChoice {
 };
 
 void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice) {
-  const StiffnessLimits limits = stiffness_limits(problem.accuracy, lattice.phi_effective);
   for (std::size_t i = 0; i < problem.cells.size(); ++i) {
     const MembraneSpec& spec = problem.cells[i].membrane;
     CellTypeLattice& cell = lattice.cells[i];
+    const double response = std::min(default_response, stability_margin * stable_response(problem.accuracy));
     MembraneModuli& m = cell.moduli;
     m.law = spec.law;
     m.shear = kappa * problem.cells[i].relative_stiffness;
@@ -335,8 +335,8 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     m.bending_constant = spec.bending_constant;
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
-    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, std::min(default_response, stability_margin * limits.area))) : 0;
-    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, std::min(default_response, stability_margin * limits.volume));
+    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, response)) : 0;
+    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, response);
   }
   if (problem.contact.enabled && kappa > 0) {
     lattice.contact_strength = problem.contact.strength * kappa;

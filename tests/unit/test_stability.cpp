@@ -104,7 +104,7 @@ TEST_CASE("Chosen settings stay within the margin for every kernel, update and r
         problem.accuracy.relaxation_time = tau;
         const auto lattice = to_lattice(problem);
         INFO("kernel " << kernel << ", tau " << tau);
-        CHECK(lattice.warnings.empty());
+        CHECK(lattice.warnings.size() == (update == VertexUpdate::euler && kernel != 4 ? 1 : 0));  // that noise grows at any stiffness
         for (const auto& margin : lattice.margins) CHECK(margin.value <= stability_margin * margin.limit * (1 + 1e-9));
       }
 }
