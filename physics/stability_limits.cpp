@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.hpp"
+
 namespace corpuscle {
 namespace {
 
@@ -54,14 +56,26 @@ constexpr double small_eta = 0.1, reference_eta = 0.5, large_eta = 1.5;
 
 double power_law(double x, double x0, double y0, double x1, double y1) { return y0 * std::pow(y1 / y0, std::log(x / x0) / std::log(x1 / x0)); }
 
-/// Between the measured relaxation times the limits over eta_0 change by powers of eta_0; outside they are those of the nearest one, for large tau in lattice units: there
-/// inertia sets the limit, not viscosity.
+/// Below tau = 0.6 the limit over eta_0 falls with (tau - 1/2)^1.4: kappa_S = eta_0 is stable down to tau = 0.537 (3 points).
+constexpr double small_tau_exponent = 1.4;
+
+/// Between the measured relaxation times the limits over eta_0 change by powers of eta_0; above they are constant in lattice units: there inertia sets the limit, not viscosity.
 double tau_factor(const Row& row, double relaxation_time) {
   const double eta = relaxation_time - 0.5;
-  if (eta <= small_eta) return row.at_small_tau;
+  if (eta <= small_eta) return row.at_small_tau * std::pow(eta / small_eta, small_tau_exponent);
   if (eta <= reference_eta) return power_law(eta, small_eta, row.at_small_tau, reference_eta, 1);
   if (eta <= large_eta) return power_law(eta, reference_eta, 1, large_eta, row.at_large_tau);
   return row.at_large_tau * large_eta / eta;
+}
+
+/// Largest stable Mach number of the walls in plane Couette flow with noise at tau - 1/2 = 0.01, 0.05, 0.1, 0.5.
+double mach_limit(CollisionKind collision, double relaxation_time) {
+  constexpr double at[] = {0.01, 0.05, 0.1, 0.5}, bgk[] = {0.149, 0.595, 0.707, 1.15}, trt[] = {0.229, 0.648, 0.771, 1.07};
+  const double eta = relaxation_time - 0.5;
+  const double* limit = collision == CollisionKind::bgk ? bgk : trt;
+  if (eta >= at[3]) return limit[3];
+  const int i = eta < at[1] ? 0 : eta < at[2] ? 1 : 2;
+  return power_law(eta, at[i], limit[i], at[i + 1], limit[i + 1]);
 }
 
 }  // namespace
@@ -115,6 +129,16 @@ void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
     if (value > stability_margin * limit * (1 + 1e-8) && value <= limit * (1 + 1e-8))
       lattice.warnings.push_back(fmt::format("{} is at {:.0f} % of its measured stability limit (docs/stability.md): {}", name, 100 * value / limit, way_out));
   };
+  if (lattice.mach_number > 0) {
+    const double limit = mach_limit(problem.accuracy.collision, lattice.relaxation_time);
+    add("Mach number", lattice.mach_number, limit, "lower accuracy.mach_max or raise accuracy.relaxation_time");
+    if (lattice.mach_number > limit * (1 + 1e-8)) {
+      const std::string message = fmt::format("accuracy.mach_max = {} is unstable with accuracy.relaxation_time = {}: it must be <= {:.3g}; or raise the relaxation time",
+                                              problem.accuracy.mach_max, lattice.relaxation_time, 0.999 * limit);
+      if (!problem.accuracy.allow_unstable) throw InputError(message);
+      lattice.warnings.push_back(message + " (accepted, because accuracy.allow_unstable = true)");
+    }
+  }
   for (std::size_t i = 0; i < lattice.cells.size(); ++i) {
     const CellTypeLattice& cell = lattice.cells[i];
     const MembraneModuli& m = cell.moduli;

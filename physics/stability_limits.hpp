@@ -42,7 +42,8 @@ double area_modulus(const CellTypeLattice& cell, double response);
 double squared_curvature(const Mesh& mesh);
 double mean_edge(const Mesh& mesh);
 
-/// Where a scene stands against all limits, and a warning for each that it comes close to. Needs the moduli.
+/// Where a scene stands against all limits, and a warning for each that it comes close to. Needs the moduli and the flow.
+/// @throws InputError when the fluid alone is unstable at this Mach number (the moduli were checked when the shear rate was chosen).
 void set_stability_margins(const Problem& problem, LatticeParameters& lattice);
 
 }  // namespace corpuscle

@@ -379,8 +379,8 @@ LatticeParameters to_lattice(const Problem& problem) {
   set_cells(problem, lattice);
   const double kappa = ShearRateChoice(problem, lattice).choose();
   set_moduli(problem, kappa, lattice);
-  set_stability_margins(problem, lattice);
   set_flow(problem, lattice);
+  set_stability_margins(problem, lattice);
   set_duration(problem, lattice);
   return lattice;
 }

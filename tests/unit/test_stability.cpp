@@ -25,7 +25,9 @@ Problem red_cells() {
 double modulus_at(Problem problem, double share) {
   problem.accuracy.shear_modulus = 1e-3;
   const auto lattice = to_lattice(problem);
-  return 1e-3 * share / lattice.margins.at(0).value * lattice.margins.at(0).limit;
+  for (const auto& margin : lattice.margins)
+    if (margin.name == "membrane stiffness of red_cell") return 1e-3 * share * margin.limit / margin.value;
+  return 0;
 }
 
 }  // namespace
@@ -92,6 +94,17 @@ TEST_CASE("Bending, area and contact have limits of their own", "[stability]") {
     problem.contact.strength = 2 * limits.contact * eta / 0.01;
     CHECK(complaint_lacks([&] { to_lattice(problem); }, {"contact.strength = ", "must be <= "}) == "");
   }
+}
+
+TEST_CASE("Near tau = 1/2 a Mach number beyond the fluid's limit is refused, and the offered one accepted", "[stability]") {
+  Problem problem;
+  problem.box.size = {4, 4, 8};
+  problem.flow.reynolds_number_max = 100;
+  problem.accuracy.relaxation_time = 0.51;
+  problem.accuracy.mach_max = 0.3;
+  CHECK(complaint_lacks([&] { to_lattice(problem); }, {"accuracy.mach_max = 0.3 is unstable", "must be <= "}) == "");
+  problem.accuracy.mach_max = 0.14;
+  CHECK(complaint_lacks([&] { to_lattice(problem); }, {}) == "no InputError");
 }
 
 TEST_CASE("Chosen settings stay within the margin for every kernel, update and relaxation time", "[stability]") {
