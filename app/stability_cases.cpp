@@ -86,11 +86,12 @@ void stiffness_in_flow(List& list, int u) {
 }
 
 void fractions_and_contact(List& list, int u) {
-  for (const double phi : {0.2, 0.66, 0.88}) {
-    ProbeScene s = soft_in_flow(3, u);
-    s.phi = phi;
-    list.add("phi_eff", "eta_0", s, modulus, set_red_cell, fmt::format("phi_eff = {:g}", phi));
-  }
+  for (const int kernel : {3, 4})
+    for (const double phi : {0.2, 0.66, 0.88}) {
+      ProbeScene s = soft_in_flow(kernel, u);
+      s.phi = phi;
+      list.add("phi_eff", "eta_0", s, modulus, set_red_cell, fmt::format("phi_eff = {:g}", phi));
+    }
   for (const int kernel : kernels) list.add("contact", "eta_0", soft_in_flow(kernel, u), LimitSearch{4, 0.1, 1000, 1.15}, set_contact);
   list.add("kappa_B", "eta_0", soft_in_flow(3, u), bending, set_bending);
   list.add("kappa_A", "response", soft_in_flow(3, u), response, set_area);

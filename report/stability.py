@@ -91,6 +91,7 @@ def plot(cases, path):
     for update in updates:
         draw_points(ax, [c for c in find(cases, "red_cell", "in flow", update) if c["radius"] == 5], "relaxation_time", update)
     ax.set(xlabel=r"relaxation time $\tau$", ylabel=r"largest stable $\kappa_S/\eta_0$", title="red cells, $\\phi_\\mathrm{eff}$ = 0.45, sheared", yscale="log")
+    ax.set_ylim(2e-3, None)
     ax = axes[0, 1]
     for update in updates:
         draw_points(ax, find(cases, "kappa_S", "at rest", update), "edge", update)
@@ -115,7 +116,7 @@ def plot(cases, path):
             low, high = ax.get_ylim()
             ax.set_ylim(10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(high)))
         if ax.get_legend_handles_labels()[0]:
-            ax.legend(frameon=False, fontsize=8.5)
+            ax.legend(frameon=False, fontsize=8.5, ncols=2 if ax is axes[0, 0] or ax is axes[0, 1] else 1, loc="lower left" if ax is axes[0, 0] or ax is axes[0, 1] else "best")
     figure.savefig(path)
 
 
