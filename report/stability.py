@@ -96,6 +96,7 @@ def plot(cases, path):
     for update in updates:
         draw_points(ax, find(cases, "kappa_S", "at rest", update), "edge", update)
     ax.set(xlabel="mean edge / lattice spacing", ylabel=r"largest stable $\kappa_S/\eta_0$", title="one cell at rest, $\\tau$ = 1, $\\kappa_S$ alone", yscale="log")
+    ax.set_ylim(2e-3, None)
     ax = axes[1, 0]
     for collision, style in (("BGK", "o-"), ("TRT", "s--")):
         points = sorted((c["relaxation_time"] - 0.5, c["limit"]) for c in cases if c["parameter"] == "Mach" and collision in c["conditions"] and c["limit"])
@@ -106,7 +107,7 @@ def plot(cases, path):
     ax.annotate("0.3: largest mach_max", (0.03, 0.3), xytext=(0, 4), textcoords="offset points", color="#666666", fontsize=9)
     ax = axes[1, 1]
     for update in updates:
-        draw_points(ax, find(cases, "phi_eff", "in flow", update) + [c for c in find(cases, "red_cell", "in flow", update) if c["relaxation_time"] == 1 and c["delta_kernel"] == 3 and c["radius"] == 5],
+        draw_points(ax, find(cases, "phi_eff", "in flow", update) + [c for c in find(cases, "red_cell", "in flow", update) if c["relaxation_time"] == 1 and c["delta_kernel"] != 2 and c["radius"] == 5],
                     "phi_effective", update)
     ax.set(xlabel=r"effective volume fraction $\phi_\mathrm{eff}$", ylabel=r"largest stable $\kappa_S/\eta_0$", title="red cells, $\\tau$ = 1, sheared", yscale="log")
     for ax in axes.flat:
