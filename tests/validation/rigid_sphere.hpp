@@ -132,6 +132,7 @@ inline Result measure(const Setup& s) {
   const int every = std::max(10, int(relaxation / 2));
   Result result;
   double last = 0;
+  int settled = 0;
   for (std::int64_t step = 1;; ++step) {
     // Force on the fluid.
     Vector3 total = Vector3::Zero();
@@ -186,8 +187,9 @@ inline Result measure(const Setup& s) {
     }
     result.steps = step;
     if (!std::isfinite(total[0]) || step > 200 * every) throw std::runtime_error("the flow around the sphere does not settle");
-    // What is left to come is about as much as came in the last half relaxation time, times 1/(e^0.5 - 1).
-    if (step > 4 * every && std::abs(result.hydrodynamic_radius - last) < 2e-4) return result;
+    // What is left to come is about as much as came in the last half relaxation time, times 1/(e^0.5 - 1). Twice in a row: it may swing.
+    settled = step > 4 * every && std::abs(result.hydrodynamic_radius - last) < 2e-4 ? settled + 1 : 0;
+    if (settled == 2) return result;
     last = result.hydrodynamic_radius;
   }
 }
