@@ -126,6 +126,10 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "cells.*.file") return only_if(cell.shape == ShapeKind::file, "shape = \"file\" (or no shape)");
   if (key.name == "cells.*.membrane.area_dilation") return only_if(cell.membrane.law == StrainLawKind::skalak, "law = \"skalak\"");
   if (key.name == "accuracy.magic_parameter") return only_if(problem.accuracy.collision == CollisionKind::trt, "collision = \"trt\"");
+  if (key.name == "accuracy.cell_size" && problem.accuracy.cell_size == CellSize::hydrodynamic) {
+    if (problem.cells.empty()) return only_if(false, "[[cells]]");
+    return only_if(problem.accuracy.shell_thickness != 0.0, "a shell (accuracy.shell_thickness > 0, or none given)");
+  }
   if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "run.packing") return only_if(!problem.cells.empty() || problem.run.packing.empty(), "[[cells]]");

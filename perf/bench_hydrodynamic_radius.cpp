@@ -50,9 +50,11 @@ int main(int argc, char* argv[]) {
         row(named(fmt::format("r = {}", radius)), s, radius > 8 ? 1 : radius > 6 ? 2 : 5, all);
       }
     } else if (table == "mesh") {
-      for (const int subdivision : {4, 5, 6, 8, 9, 12}) {
+      // A membrane holds the vertices: springs on vertices closer than the kernel resolves take for ever to settle.
+      s.hold = Hold::elastic;
+      for (const int subdivision : {4, 5, 6, 8, 9}) {
         s.subdivision = subdivision;
-        row(named(fmt::format("r = 6, n/r = {:.2f}", subdivision / s.radius)), s, 3, {Motion::translation, Motion::rotation, Motion::strain_shear});
+        row(named(fmt::format("r = 6, stiff capsule, n/r = {:.2f}", subdivision / s.radius)), s, 3, {Motion::translation});
       }
     } else if (table == "viscosity") {
       for (const CollisionKind collision : {CollisionKind::bgk, CollisionKind::trt})

@@ -164,6 +164,10 @@ TEST_CASE("cell_size is a key with two values, and a shell survives the merged s
   CHECK_THROWS_AS(scene("count = 1", "cell_size = 'corrected'"), InputError);
   CHECK_THROWS_AS(scene("count = 1", "shell_thickness = -0.1"), InputError);
   CHECK_THROWS_AS(scene("count = 1", "shell_thickness = 2.5"), InputError);
+  CHECK_THROWS_AS(scene("count = 1", "shell_thickness = 0\ncell_size = 'hydrodynamic'"), InputError);  // nothing to take off
+  CHECK_THROWS_AS(parse_scene("[box]\nsize = [4, 4, 4]\n[accuracy]\ncell_size = 'hydrodynamic'", "scene.toml"), InputError);  // no cells
+  const Problem empty = parse_scene("[box]\nsize = [4, 4, 4]", "scene.toml");
+  CHECK(parse_scene(to_toml(empty), "merged.toml").accuracy.cell_size == CellSize::mesh);
   const Problem again = parse_scene(to_toml(scene("count = 1", "shell_thickness = 0.25\ncell_size = 'hydrodynamic'")), "merged.toml");
   CHECK(again.accuracy.shell_thickness == 0.25);
   CHECK(again.accuracy.cell_size == CellSize::hydrodynamic);
