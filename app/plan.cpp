@@ -43,6 +43,7 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
   j["reynolds_number"] = l.reynolds_number;
   j["mach_number"] = l.mach_number;
   j["phi_geometric"] = l.phi_geometric;
+  j["phi_nominal"] = l.phi_nominal;
   j["phi_effective"] = l.phi_effective;
   j["contact_strength"] = l.contact_strength;
   j["contact_range"] = l.contact_range;
@@ -57,10 +58,14 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
     j["cells"].push_back({{"name", t.name},
                           {"count", t.count},
                           {"radius", t.radius},
+                          {"mesh_radius", t.mesh_radius},
+                          {"shell_thickness", t.shell_thickness},
+                          {"effective_radius", t.effective_radius},
                           {"subdivision", t.subdivision},
                           {"vertices", t.vertices},
                           {"faces", t.faces},
                           {"volume", t.volume},
+                          {"nominal_volume", t.nominal_volume},
                           {"area", t.area},
                           {"effective_volume", t.effective_volume},
                           {"shear_modulus", t.moduli.shear},
@@ -96,7 +101,14 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
                t.name, t.radius, t.vertices, t.faces, t.moduli.shear, t.moduli.area_dilation, t.moduli.bending, t.moduli.global_area, t.moduli.volume);
     vertices += t.count * t.vertices;
   }
-  if (!l.cells.empty()) fmt::print("Fraction    {:.4f} geometric, {:.4f} effective (shell of {:g} lattice units)\n", l.phi_geometric, l.phi_effective, problem.accuracy.shell_thickness);
+  for (std::size_t i = 0; i < l.cells.size(); ++i)
+    fmt::print("{}effective radius of {} = {:.4g} (mesh {:.4g} + shell {:.3g})\n", i == 0 ? "Size        " : "            ", l.cells[i].name, l.cells[i].effective_radius,
+               l.cells[i].mesh_radius, l.cells[i].shell_thickness);
+  if (!l.cells.empty()) {
+    fmt::print("Fraction    {:.4f} geometric, ", l.phi_geometric);
+    if (problem.accuracy.cell_size == CellSize::hydrodynamic) fmt::print("{:.4f} nominal, ", l.phi_nominal);
+    fmt::print("{:.4f} effective\n", l.phi_effective);
+  }
   bool first = true;
   for (const auto& model : active_models(problem, l)) {
     fmt::print("{}{}\n", first ? "Models      " : "            ", model);

@@ -42,7 +42,7 @@ bool close(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::
 Packing packing_layout(const LatticeParameters& lattice) {
   Packing packing;
   for (std::size_t axis = 0; axis < 3; ++axis) packing.box[axis] = lattice.nodes[axis];
-  for (const auto& type : lattice.cells) packing.types.push_back({type.name, type.radius, type.vertices, type.count});
+  for (const auto& type : lattice.cells) packing.types.push_back({type.name, type.mesh_radius, type.vertices, type.count});
   return packing;
 }
 

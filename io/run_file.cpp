@@ -100,7 +100,11 @@ void write_cell_type(hdf5::File& file, const std::string& group, const CellTypeL
   integer("faces", type.faces);
   integer("count", type.count);
   number("radius", type.radius);
+  number("mesh_radius", type.mesh_radius);
+  number("shell_thickness", type.shell_thickness);
+  number("effective_radius", type.effective_radius);
   number("volume", type.volume);
+  number("nominal_volume", type.nominal_volume);
   number("area", type.area);
   number("effective_volume", type.effective_volume);
   number("shear_modulus", type.moduli.shear);
@@ -127,6 +131,7 @@ void write_lattice(hdf5::File& file, const LatticeParameters& lattice) {
   number("reynolds_number", lattice.reynolds_number);
   number("mach_number", lattice.mach_number);
   number("phi_geometric", lattice.phi_geometric);
+  number("phi_nominal", lattice.phi_nominal);
   number("phi_effective", lattice.phi_effective);
   number("contact_strength", lattice.contact_strength);
   number("contact_range", lattice.contact_range);

@@ -72,7 +72,10 @@ const Key table[] = {
     {"accuracy.membrane_precision", CORPUSCLE_FIELD(P.accuracy.membrane_precision), any, "single|double", "", "", "Of membrane forces (positions are always double)"},
     {"accuracy.vertex_update", CORPUSCLE_FIELD(P.accuracy.vertex_update), any, "averaged|euler", "", "", "Vertices move with the mean velocity of two steps, or of the last one: euler is unstable for stiff membranes with 2 and 3 points"},
     {"accuracy.mach_max", CORPUSCLE_FIELD(P.accuracy.mach_max), positive(0.3), "", "", "", "Largest imposed velocity / speed of sound does not exceed this"},
-    {"accuracy.shell_thickness", CORPUSCLE_FIELD(P.accuracy.shell_thickness), between(0, 2), "", "lattice units", "", "Hydrodynamic shell for φ_eff"},
+    {"accuracy.shell_thickness", CORPUSCLE_FIELD(P.accuracy.shell_thickness), between(0, 2), "", "lattice units", "measured for the kernel",
+     "By how much a cell is hydrodynamically larger than its mesh, for φ_eff and `cell_size`"},
+    {"accuracy.cell_size", CORPUSCLE_FIELD(P.accuracy.cell_size), any, "mesh|hydrodynamic", "", "",
+     "Which surface has the nominal radius: the mesh, or the one a shell outside of it; the mesh then lies a shell inside"},
     {"accuracy.shear_modulus", CORPUSCLE_FIELD(P.accuracy.shear_modulus), positive(10), "", "lattice units",
      "largest that all limits allow (rest: at most η₀/4)", "κ_S; fixes the shear rate through Ca"},
     {"accuracy.shear_rate", CORPUSCLE_FIELD(P.accuracy.shear_rate), positive(1), "", "1 / time step", "largest that all limits allow", "γ̇ (at the wall for poiseuille)"},
@@ -125,6 +128,10 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "cells.*.file") return only_if(cell.shape == ShapeKind::file, "shape = \"file\" (or no shape)");
   if (key.name == "cells.*.membrane.area_dilation") return only_if(cell.membrane.law == StrainLawKind::skalak, "law = \"skalak\"");
   if (key.name == "accuracy.magic_parameter") return only_if(problem.accuracy.collision == CollisionKind::trt, "collision = \"trt\"");
+  if (key.name == "accuracy.cell_size" && problem.accuracy.cell_size == CellSize::hydrodynamic) {
+    if (problem.cells.empty()) return only_if(false, "[[cells]]");
+    return only_if(problem.accuracy.shell_thickness != 0.0, "a shell (accuracy.shell_thickness > 0, or none given)");
+  }
   if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "run.packing") return only_if(!problem.cells.empty() || problem.run.packing.empty(), "[[cells]]");

@@ -19,9 +19,11 @@ SeriesSummary::SeriesSummary(const LatticeParameters& lattice, double discard) :
   scene_.capillary_number = lattice.capillary_number;
   scene_.reynolds_number = lattice.reynolds_number;
   scene_.phi_geometric = lattice.phi_geometric;
+  scene_.phi_nominal = lattice.phi_nominal;
   scene_.phi_effective = lattice.phi_effective;
   for (const auto& type : lattice.cells) {
     scene_.cell_count += type.count;
+    scene_.effective_radius.emplace_back(type.name, type.effective_radius);
     if (type.count > 0) reference_area_ = type.area;
   }
 }
@@ -98,8 +100,8 @@ Summary SeriesSummary::result() const {
     summary.deformation = mean_of(&Row::deformation).mean;
     summary.area_ratio = mean_of(&Row::area_ratio).mean;
     summary.inclination = std::atan2(mean_of(&Row::sin_twice_inclination).mean, mean_of(&Row::cos_twice_inclination).mean) / 2;
-    summary.intrinsic_viscosity = (summary.relative_viscosity.mean - 1) / summary.phi_geometric;
-    summary.intrinsic_viscosity_error = summary.relative_viscosity.error / summary.phi_geometric;
+    summary.intrinsic_viscosity = (summary.relative_viscosity.mean - 1) / summary.phi_nominal;
+    summary.intrinsic_viscosity_error = summary.relative_viscosity.error / summary.phi_nominal;
   }
   return summary;
 }
@@ -119,7 +121,10 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["capillary_number"] = summary.capillary_number;
   json["reynolds_number"] = summary.reynolds_number;
   json["phi_geometric"] = summary.phi_geometric;
+  json["phi_nominal"] = summary.phi_nominal;
   json["phi_effective"] = summary.phi_effective;
+  json["effective_radius"] = nlohmann::ordered_json::object();
+  for (const auto& [name, radius] : summary.effective_radius) json["effective_radius"][name] = radius;
   json["cell_count"] = summary.cell_count;
   json["steps"] = summary.steps;
   json["strain"] = summary.strain;

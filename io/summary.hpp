@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/sample.hpp"
@@ -19,7 +20,9 @@ struct Summary {
   double capillary_number = none;
   double reynolds_number = none;
   double phi_geometric = none;
+  double phi_nominal = none;    ///< of the cells at their nominal radius
   double phi_effective = none;
+  std::vector<std::pair<std::string, double>> effective_radius;  ///< hydrodynamic radius of each cell type, lattice units
   std::int64_t cell_count = 0;
   std::int64_t steps = 0;  ///< reached
   double strain = 0;       ///< reached
@@ -41,7 +44,7 @@ struct Summary {
   // One cell only, means over the same window.
   double deformation = none;
   double inclination = none;          ///< rad, against the flow direction
-  double intrinsic_viscosity = none;  ///< (relative_viscosity - 1)/phi_geometric
+  double intrinsic_viscosity = none;  ///< (relative_viscosity - 1)/phi_nominal
   double intrinsic_viscosity_error = none;
   double area_ratio = none;           ///< A/A_0
 

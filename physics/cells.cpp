@@ -1,5 +1,7 @@
 #include "physics/cells.hpp"
 
+#include "physics/hydrodynamic_size.hpp"
+
 namespace corpuscle {
 
 std::vector<CellType> make_cell_types(const Problem& problem, const LatticeParameters& lattice) {
@@ -11,7 +13,7 @@ std::vector<CellType> make_cell_types(const Problem& problem, const LatticeParam
     type.name = from.name;
     type.radius = from.radius;
     type.moduli = from.moduli;
-    type.reference = make_mesh(problem.cells[t], from.radius, from.subdivision);
+    type.reference = make_cell_mesh(problem.cells[t], problem.accuracy, from.radius, from.subdivision);
     type.count = int(from.count);
     type.first_cell = cell;
     type.first_vertex = vertex;

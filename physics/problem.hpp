@@ -15,6 +15,8 @@ enum class StrainLawKind { skalak, neo_hookean };
 enum class CollisionKind { bgk, trt };
 /// How vertices move with the interpolated velocity (physics/cells.hpp).
 enum class VertexUpdate { averaged, euler };
+/// Which surface has the nominal radius: the mesh, or the one a hydrodynamic shell outside of it (physics/hydrodynamic_size.hpp).
+enum class CellSize { mesh, hydrodynamic };
 enum class Precision { single_precision, double_precision };
 
 /// [box] Lengths in cell radii; z is the gradient direction and is bounded by walls when `walls` is true, x is the flow direction.
@@ -77,7 +79,8 @@ struct AccuracySpec {
   Precision membrane_precision = Precision::double_precision;   ///< membrane forces (positions are always double)
   VertexUpdate vertex_update = VertexUpdate::averaged;
   double mach_max = 0.1;                     ///< wall (or maximum) velocity / speed of sound must not exceed this
-  double shell_thickness = 0.30;             ///< lattice units, for the effective volume fraction
+  std::optional<double> shell_thickness;     ///< hydrodynamic shell around a mesh, lattice units; default: the measured one of the kernel
+  CellSize cell_size = CellSize::mesh;
   std::optional<double> shear_modulus;       ///< kappa_S in lattice units; default: the largest stable one
   std::optional<double> shear_rate;          ///< in lattice units; default: the largest that all limits allow
   bool allow_unstable = false;               ///< what measured stability limits refuse is run with a warning

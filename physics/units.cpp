@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "physics/hydrodynamic_size.hpp"
 #include "physics/mesh.hpp"
 #include "physics/stability_limits.hpp"
 
@@ -70,9 +71,9 @@ void set_box(const Problem& problem, LatticeParameters& lattice) {
   }
 }
 
-Mesh mesh_of(const CellSpec& spec, std::size_t type, double radius, int subdivision) {
+Mesh mesh_of(const CellSpec& spec, const AccuracySpec& accuracy, std::size_t type, double radius, int subdivision) {
   try {
-    return make_mesh(spec, radius, subdivision);
+    return make_cell_mesh(spec, accuracy, radius, subdivision);
   } catch (const InputError& error) {
     throw InputError(fmt::format("cells.{}: {}", type, error.what()));
   }
@@ -105,7 +106,7 @@ std::int64_t count_of(const CellSpec& spec, std::size_t type, const CellTypeLatt
   }
   const bool geometric = spec.volume_fraction.has_value();
   const double fraction = geometric ? *spec.volume_fraction : *spec.effective_volume_fraction;
-  const double one = (geometric ? cell.volume : cell.effective_volume) / box;
+  const double one = (geometric ? cell.nominal_volume : cell.effective_volume) / box;
   const std::int64_t count = std::llround(fraction / one);
   if (count < 1) {
     throw InputError(fmt::format("cells.{}.{} = {} gives no cell in this box: it must be >= {} (one cell); raise it, enlarge the box or give count", type,
@@ -124,18 +125,24 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     cell.radius = lattice.radius * spec.relative_radius;
     const double frequency = problem.accuracy.subdivision ? *problem.accuracy.subdivision * spec.relative_radius : cell.radius;
     const int subdivision = std::max(2, static_cast<int>(std::lround(frequency)));
-    const Mesh mesh = mesh_of(spec, i, cell.radius, subdivision);
+    const Mesh mesh = mesh_of(spec, problem.accuracy, i, cell.radius, subdivision);
     check_walls(problem, i, mesh);
     cell.subdivision = spec.shape == ShapeKind::file ? 0 : subdivision;
     cell.vertices = static_cast<std::int64_t>(mesh.vertices.size());
     cell.faces = static_cast<std::int64_t>(mesh.faces.size());
+    const bool nominal = problem.accuracy.cell_size == CellSize::mesh;
     cell.volume = mesh_volume(mesh);
+    cell.nominal_volume = nominal ? cell.volume : mesh_volume(make_mesh(spec, cell.radius, subdivision));
+    cell.shell_thickness = shell_thickness(problem.accuracy, cell.radius);
+    cell.mesh_radius = nominal ? cell.radius : cell.radius - cell.shell_thickness;
+    cell.effective_radius = cell.mesh_radius + cell.shell_thickness;
     cell.area = mesh_area(mesh);
     cell.edge = mean_edge(mesh);
     cell.squared_curvature = squared_curvature(mesh);
-    cell.effective_volume = mesh_effective_volume(mesh, problem.accuracy.shell_thickness);
+    cell.effective_volume = mesh_effective_volume(mesh, cell.shell_thickness);
     cell.count = count_of(spec, i, cell, box);
     lattice.phi_geometric += static_cast<double>(cell.count) * cell.volume / box;
+    lattice.phi_nominal += static_cast<double>(cell.count) * cell.nominal_volume / box;
     lattice.phi_effective += static_cast<double>(cell.count) * cell.effective_volume / box;
     vertices += static_cast<double>(cell.count * cell.vertices);
     one = std::max(one, cell.effective_volume / box);

@@ -36,7 +36,10 @@ struct StabilityMargin {
 /// What one cell type costs and fills; filled from its mesh.
 struct CellTypeLattice {
   std::string name;
-  double radius = 0;            ///< large radius in lattice units
+  double radius = 0;            ///< nominal large radius in lattice units
+  double mesh_radius = 0;       ///< large radius of the mesh: smaller by the shell with CellSize::hydrodynamic
+  double shell_thickness = 0;   ///< by which the flow sees the cell larger than its mesh
+  double effective_radius = 0;  ///< hydrodynamic: mesh_radius + shell_thickness
   int subdivision = 0;          ///< 0 for meshes from files
   std::int64_t vertices = 0;    ///< per cell
   std::int64_t faces = 0;
@@ -44,6 +47,7 @@ struct CellTypeLattice {
   double area = 0;
   double edge = 0;              ///< mean edge of the mesh
   double squared_curvature = 0; ///< mean of (2H)^2 over the surface
+  double nominal_volume = 0;    ///< of the mesh at the nominal radius; equals `volume` unless CellSize::hydrodynamic
   double effective_volume = 0;  ///< with the shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
   std::int64_t count = 0;
   MembraneModuli moduli;
@@ -63,8 +67,9 @@ struct LatticeParameters {
   double capillary_number = 0;         ///< with kappa_S; 0 without cells
   double reynolds_number = 0;
   double mach_number = 0;
-  double phi_geometric = 0;
-  double phi_effective = 0;
+  double phi_geometric = 0;            ///< of the meshes
+  double phi_nominal = 0;              ///< of the nominal cells; equals phi_geometric unless CellSize::hydrodynamic
+  double phi_effective = 0;            ///< with the shell
   double contact_strength = 0;         ///< kappa_int
   double contact_range = 0;            ///< d_0
   std::int64_t steps = 0;              ///< of the whole run

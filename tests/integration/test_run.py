@@ -26,7 +26,7 @@ series_every = 0.02
 snapshot_every = 0.2
 """
 
-SUMMARY_KEYS = """capillary_number reynolds_number phi_geometric phi_effective cell_count strain relative_viscosity relative_viscosity_error
+SUMMARY_KEYS = """capillary_number reynolds_number phi_geometric phi_nominal phi_effective effective_radius cell_count strain relative_viscosity relative_viscosity_error
 wall_relative_viscosity normal_stress_difference_1 normal_stress_difference_2 volume_drift_max area_drift_max steps wall_seconds mlups threads
 bytes_peak""".split()
 
@@ -54,6 +54,9 @@ def check_outputs(program, folder, scene):
         stresslets = file["cells/stresslet"][:]
         plan = json.loads(run(program, "plan", scene, "--json").stdout)
         volume = np.prod(plan["nodes"])
+        kind, type_name = file["lattice/cell_types/0"].attrs, plan["cells"][0]["name"]
+        radius = plan["cells"][0]["mesh_radius"] + plan["cells"][0]["shell_thickness"]
+        assert np.allclose([plan["cells"][0]["effective_radius"], kind["effective_radius"], summary["effective_radius"][type_name]], radius)
         assert np.allclose(stresslets.sum(axis=1) / volume, stress, rtol=1e-10, atol=1e-18), "stress is the sum of the stresslets"
         eta = 1 + stress[:, 0, 2] / (plan["viscosity"] * plan["shear_rate"])
         assert np.allclose(eta, file["series/relative_viscosity"][:])

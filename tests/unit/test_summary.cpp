@@ -20,8 +20,11 @@ LatticeParameters lattice_of(std::int64_t cells) {
   lattice.capillary_number = 0.1;
   lattice.reynolds_number = 0.05;
   lattice.phi_geometric = 0.25;
+  lattice.phi_nominal = 0.25;
   lattice.phi_effective = 0.3;
   lattice.cells.resize(1);
+  lattice.cells[0].name = "bead";
+  lattice.cells[0].effective_radius = 8.4;
   lattice.cells[0].area = 200;
   lattice.cells[0].count = cells;
   return lattice;
@@ -113,7 +116,7 @@ TEST_CASE("summary.json: keys, null for missing numbers, whole or not at all", "
   CHECK_FALSE(std::filesystem::exists(folder / "summary.json.tmp"));
   const auto json = read_json(folder / "summary.json");
   for (const char* key :
-       {"capillary_number", "reynolds_number", "phi_geometric", "phi_effective", "cell_count", "strain", "steps", "relative_viscosity",
+       {"capillary_number", "reynolds_number", "phi_geometric", "phi_nominal", "phi_effective", "effective_radius", "cell_count", "strain", "steps", "relative_viscosity",
         "relative_viscosity_error", "wall_relative_viscosity", "wall_relative_viscosity_error", "bulk_relative_viscosity",
         "bulk_relative_viscosity_error", "normal_stress_difference_1", "normal_stress_difference_1_error", "normal_stress_difference_2",
         "normal_stress_difference_2_error", "volume_drift_max", "area_drift_max", "wall_seconds", "mlups", "threads", "bytes_peak",
@@ -122,6 +125,7 @@ TEST_CASE("summary.json: keys, null for missing numbers, whole or not at all", "
     CHECK(json.contains(key));
   }
   CHECK(json["wall_relative_viscosity"].is_null());
+  CHECK(json["effective_radius"]["bead"] == 8.4);
   CHECK(json["relative_viscosity"].get<double>() == summary.relative_viscosity.mean);
   CHECK(json["bytes_peak"] == 5000000000);
   CHECK(json["stopped_by"] == "interrupt");

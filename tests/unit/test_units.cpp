@@ -15,6 +15,7 @@ namespace {
 Problem paper() {
   Problem problem;
   problem.accuracy.radius = 9;
+  problem.accuracy.shell_thickness = 0.30;  // the paper's effective volume
   problem.flow.reynolds_number_max = 0.1;
   CellSpec cell;
   cell.name = "red_cell";

@@ -44,7 +44,7 @@ Packed pack(const std::string& scene) {
 }
 
 std::string red_cells(double phi, int seed) {
-  return "[box]\nsize = [5, 5, 5]\n[flow]\ncapillary_number = 0.05\n[accuracy]\nradius = 6\n[run]\nseed = " + std::to_string(seed) + "\n[[cells]]\neffective_volume_fraction = " + std::to_string(phi) +
+  return "[box]\nsize = [5, 5, 5]\n[flow]\ncapillary_number = 0.05\n[accuracy]\nradius = 6\nshell_thickness = 0.3\n[run]\nseed = " + std::to_string(seed) + "\n[[cells]]\neffective_volume_fraction = " + std::to_string(phi) +
          "\n";
 }
 
