@@ -100,6 +100,9 @@ class Checker {
     if (c.axis && std::hypot((*c.axis)[0], (*c.axis)[1], (*c.axis)[2]) < 1e-9) {
       fail(at + "axis", fmt::format("{} has no direction: at least one component must differ from 0", said(at + "axis")));
     }
+    if (std::hypot(c.stretch.direction[0], c.stretch.direction[1], c.stretch.direction[2]) < 1e-9) {
+      fail(at + "stretch.direction", fmt::format("{} has no direction: at least one component must differ from 0", said(at + "stretch.direction")));
+    }
   }
 
   /// Names become names of data sets, so they are unique and plain.

@@ -55,6 +55,12 @@ const Key table[] = {
      "κ_A of the whole surface; 0: no force"},
     {"cells.*.membrane.volume", CORPUSCLE_FIELD(C.membrane.volume), between(0, 1e8), "", "κ_S / r", "c_s V₀/A in lattice units", "κ_V of the volume; 0: no force"},
 
+    {"cells.*.stretch.force", CORPUSCLE_FIELD(C.stretch.force), between(0, 1e4), "", "κ_S r", "none",
+     "External force on each cell of the type: +F along `direction` on one contact patch, −F on the opposite one"},
+    {"cells.*.stretch.patch_diameter", CORPUSCLE_FIELD(C.stretch.patch_diameter), positive(10), "", "r", "",
+     "Vertices of the reference shape within half of this of the two points where the line through its centroid leaves it are pulled, with equal shares"},
+    {"cells.*.stretch.direction", CORPUSCLE_FIELD(C.stretch.direction), between(-1e6, 1e6), "", "", "", "Of the force, in the laboratory; constant"},
+
     {"contact.enabled", CORPUSCLE_FIELD(P.contact.enabled), any, "", "", "", "Repulsion between vertices of different cells, and vertices and walls"},
     {"contact.strength", CORPUSCLE_FIELD(P.contact.strength), positive(100), "", "κ_S", "", "κ_int in the force κ_int (d⁻² − d₀⁻²), d in lattice units"},
     {"contact.range", CORPUSCLE_FIELD(P.contact.range), between(0.1, 3), "", "lattice units", "", "d₀"},
@@ -122,6 +128,7 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "cells.*.aspect_ratio") return only_if(cell.shape == ShapeKind::spheroid, "shape = \"spheroid\"");
   if (key.name == "cells.*.file") return only_if(cell.shape == ShapeKind::file, "shape = \"file\" (or no shape)");
   if (key.name == "cells.*.membrane.area_dilation") return only_if(cell.membrane.law == StrainLawKind::skalak, "law = \"skalak\"");
+  if (key.section() == "cells.*.stretch" && key.leaf() != "force") return only_if(cell.stretch.force.has_value(), "stretch.force");
   if (key.name == "accuracy.magic_parameter") return only_if(problem.accuracy.collision == CollisionKind::trt, "collision = \"trt\"");
   if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");

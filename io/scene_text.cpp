@@ -153,6 +153,9 @@ std::string to_toml(const Problem& problem) {
     write_section(out, "cells.*", problem, cell);
     out += "[cells.membrane]\n";
     write_section(out, "cells.*.membrane", problem, cell);
+    if (!cell.stretch.force) continue;
+    out += "[cells.stretch]\n";
+    write_section(out, "cells.*.stretch", problem, cell);
   }
   for (const char* section : {"contact", "accuracy", "run", "output"}) {
     out += fmt::format("[{}]\n", section);
@@ -170,7 +173,7 @@ std::string scene_key_reference() {
   for (const scene::Key& key : scene::keys()) {
     if (key.section() != section) {
       section = key.section();
-      const std::string title = section == "cells.*" ? "[[cells]]" : section == "cells.*.membrane" ? "[[cells]] membrane" : fmt::format("[{}]", section);
+      const std::string title = section == "cells.*" ? "[[cells]]" : section.starts_with("cells.*.") ? fmt::format("[[cells]] {}", section.substr(8)) : fmt::format("[{}]", section);
       out += fmt::format("{}### {}\n\n| key | type | default | allowed | unit | meaning |\n|---|---|---|---|---|---|\n", out.empty() ? "" : "\n", title);
     }
     std::string default_text(key.default_note);

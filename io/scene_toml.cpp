@@ -123,7 +123,7 @@ void apply_override(Document& document, const std::string& text) {
     throw InputError(fmt::format("--set: {} isn't of the form key=value, for instance flow.capillary_number=0.05", quote(one_line(text))));
   }
   const std::string pattern = pattern_of(path);
-  if (find_key(pattern) == nullptr && !(is_section(pattern) && pattern == "cells.*.membrane")) {
+  if (find_key(pattern) == nullptr && !(is_section(pattern) && pattern.starts_with("cells.*."))) {
     throw InputError(fmt::format("--set: {} isn't a key of a scene; the nearest known key is {}", one_line(path), nearest_key(pattern)));
   }
   const std::vector<std::string> parts = split(path);

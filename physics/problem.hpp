@@ -41,6 +41,13 @@ struct MembraneSpec {
   std::optional<double> volume;              ///< kappa_V r / kappa_S; absent: c_s V_0/A in lattice units; 0: no volume force
 };
 
+/// [[cells]].stretch: two opposite external forces on two contact patches (physics/stretching.hpp).
+struct StretchSpec {
+  std::optional<double> force;               ///< F / (kappa_S r) of the type: +F on one patch, -F on the other; absent: none
+  double patch_diameter = 0.5;               ///< in radii of the type
+  std::array<double, 3> direction{1, 0, 0};  ///< of +F, in the laboratory; the patches lie where it leaves the cell as placed by `axis`
+};
+
 /// [[cells]] one cell type.
 struct CellSpec {
   std::string name;                          ///< used in outputs; default: shape name, numbered when not unique
@@ -55,6 +62,7 @@ struct CellSpec {
   std::optional<std::array<double, 3>> position;    ///< of the only cell of the type, in cell radii; else packed
   std::optional<std::array<double, 3>> axis;        ///< symmetry axis of the only cell (reference: z); with `position`
   MembraneSpec membrane;
+  StretchSpec stretch;
 };
 
 /// [contact] short-range repulsion between vertices of different cells, and vertices and walls.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "physics/contact_patches.hpp"
 #include "physics/mesh.hpp"
 
 namespace corpuscle {
@@ -115,6 +116,19 @@ void check_walls(const Problem& problem, std::size_t type, const Mesh& mesh) {
   }
 }
 
+/// Refuses contact patches that the mesh can't have.
+void check_stretch(const Problem& problem, std::size_t type, const Mesh& mesh, double radius) {
+  const CellSpec& spec = problem.cells[type];
+  if (!spec.stretch.force) return;
+  const double diameter = spec.stretch.patch_diameter;
+  const ContactPatches patches = contact_patches(mesh, direction_in_reference(spec), diameter * radius);
+  const auto refuse = [&](const char* what, const std::string& allowed) {
+    throw InputError(fmt::format("cells.{}.stretch.patch_diameter = {} {}: it must be {}", type, diameter, what, allowed));
+  };
+  if (patches.ahead.empty() || patches.behind.empty()) refuse("is too small for the mesh, no vertex lies in the patch", ">= " + at_least(patches.smallest_diameter / radius));
+  if (diameter * radius > patches.largest_diameter * (1 - tolerance)) refuse("makes both patches overlap", "< " + at_most(patches.largest_diameter / radius));
+}
+
 /// Number of cells from the fraction that the scene gives.
 std::int64_t count_of(const CellSpec& spec, std::size_t type, const CellTypeLattice& cell, double box) {
   if (spec.count) return *spec.count;
@@ -144,6 +158,7 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     const int subdivision = std::max(2, static_cast<int>(std::lround(frequency)));
     const Mesh mesh = mesh_of(spec, i, cell.radius, subdivision);
     check_walls(problem, i, mesh);
+    check_stretch(problem, i, mesh, cell.radius);
     cell.subdivision = spec.shape == ShapeKind::file ? 0 : subdivision;
     cell.vertices = static_cast<std::int64_t>(mesh.vertices.size());
     cell.faces = static_cast<std::int64_t>(mesh.faces.size());
@@ -305,6 +320,7 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
     m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? penalty * lattice.viscosity : 0;
     m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, default_volume);
+    cell.stretching_force = problem.cells[i].stretch.force.value_or(0) * m.shear * cell.radius;
   }
   if (problem.contact.enabled && kappa > 0) {
     lattice.contact_strength = problem.contact.strength * kappa;

@@ -38,6 +38,7 @@ struct CellTypeLattice {
   double effective_volume = 0;  ///< with the shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
   std::int64_t count = 0;
   MembraneModuli moduli;
+  double stretching_force = 0;  ///< on each of the two contact patches
 };
 
 /// Everything the solver needs, in lattice units (dx = dt = rho_0 = 1).
