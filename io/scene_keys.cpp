@@ -18,6 +18,11 @@ constexpr double many_steps = 1e15;
 
 // name | member | range | choices | unit | default when it isn't the constant of problem.hpp | meaning
 const Key table[] = {
+    {"si.radius", CORPUSCLE_FIELD(P.si.radius), between(1e-9, 1e-2), "", "", "none", "Large radius r of a cell (with relative_radius = 1)"},
+    {"si.viscosity", CORPUSCLE_FIELD(P.si.viscosity), between(1e-6, 1e3), "", "", "none", "Viscosity η₀ of the fluid"},
+    {"si.shear_modulus", CORPUSCLE_FIELD(P.si.shear_modulus), between(1e-9, 1e3), "", "", "none", "G_s = κ_S/3, the surface shear modulus (with relative_stiffness = 1)"},
+    {"si.shear_rate", CORPUSCLE_FIELD(P.si.shear_rate), positive(1e9), "", "", "none", "γ̇, instead of a capillary number; the merged scene has the capillary number"},
+
     {"box.size", CORPUSCLE_FIELD(P.box.size), positive(1e4), "", "cell radii", "",
      "Length, width and height; rounded to whole lattice nodes. x is the flow direction, z the gradient direction"},
     {"box.walls", CORPUSCLE_FIELD(P.box.walls), any, "", "", "",
@@ -84,13 +89,14 @@ const Key table[] = {
     {"accuracy.shear_rate", CORPUSCLE_FIELD(P.accuracy.shear_rate), positive(1), "", "1 / time step", "largest that all limits allow", "γ̇ (at the wall for poiseuille)"},
 
     {"run.strain", CORPUSCLE_FIELD(P.run.strain), positive(1e9), "", "1/γ̇", "", "Length of the run; not with `rest`"},
-    {"run.steps", CORPUSCLE_FIELD(P.run.steps), between(1, many_steps), "", "time steps", "from strain", "Length of the run instead of strain; required for `rest`"},
+    {"run.duration", CORPUSCLE_FIELD(P.run.duration), positive(1e9), "", "η₀ r/κ_S", "from strain", "Length of the run instead of strain or steps: needs cells, and may be used with `rest`"},
+    {"run.steps", CORPUSCLE_FIELD(P.run.steps), between(1, many_steps), "", "time steps", "from strain", "Length of the run instead of strain; `rest` needs this or `duration`"},
     {"run.seed", CORPUSCLE_FIELD(P.run.seed), between(0, 9e18), "", "", "", "Of the packing"},
     {"run.packing", CORPUSCLE_FIELD(P.run.packing), any, "", "", "", "File of a saved packing, relative to the scene; empty: pack"},
     {"run.discard", CORPUSCLE_FIELD(P.run.discard), Range{0, 1, false, true}, "", "of the run", "", "Left out of the means at the start"},
 
-    {"output.series_every", CORPUSCLE_FIELD(P.output.series_every), positive(many_steps), "", "1/γ̇; rest: time steps", "0.05; rest: 200th of the run", "Cadence of the time series"},
-    {"output.snapshot_every", CORPUSCLE_FIELD(P.output.snapshot_every), between(0, many_steps), "", "1/γ̇; rest: time steps", "1; rest: 10th of the run",
+    {"output.series_every", CORPUSCLE_FIELD(P.output.series_every), positive(many_steps), "", "1/γ̇; rest: that of `steps` or `duration`", "0.05; rest: 200th of the run", "Cadence of the time series"},
+    {"output.snapshot_every", CORPUSCLE_FIELD(P.output.snapshot_every), between(0, many_steps), "", "1/γ̇; rest: that of `steps` or `duration`", "1; rest: 10th of the run",
      "Cadence of the snapshots; 0: none"},
     {"output.trajectories", CORPUSCLE_FIELD(P.output.trajectories), any, "", "", "", "Data of each cell at the cadence of the series"},
     {"output.fluid", CORPUSCLE_FIELD(P.output.fluid), any, "", "", "", "Velocity field at the cadence of the snapshots"},
@@ -130,6 +136,7 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "cells.*.membrane.area_dilation") return only_if(cell.membrane.law == StrainLawKind::skalak, "law = \"skalak\"");
   if (key.section() == "cells.*.stretch" && key.leaf() != "force") return only_if(cell.stretch.force.has_value(), "stretch.force");
   if (key.name == "accuracy.magic_parameter") return only_if(problem.accuracy.collision == CollisionKind::trt, "collision = \"trt\"");
+  if (key.name == "run.duration" || key.section() == "si") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "run.packing") return only_if(!problem.cells.empty() || problem.run.packing.empty(), "[[cells]]");

@@ -8,6 +8,7 @@
 
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
+#include "io/scene_si.hpp"
 
 namespace corpuscle::scene {
 
@@ -120,7 +121,7 @@ void write_section(std::string& out, std::string_view section, const Problem& pr
   for (const Key& key : keys()) {
     std::string reason;
     if (key.section() != section || !applies(key, problem, cell, reason)) continue;
-    if (key.name == "run.strain" && (problem.run.steps || problem.flow.kind == FlowKind::rest)) continue;
+    if (key.name == "run.strain" && (problem.run.steps || problem.run.duration || problem.flow.kind == FlowKind::rest)) continue;
     const std::string value = value_text(key, key.field(p, c));
     if (value.empty()) out += fmt::format("# {} not set: {}\n", key.leaf(), key.default_note);
     else out += fmt::format("{} = {}\n", key.leaf(), value);
@@ -144,6 +145,10 @@ std::string to_toml(const Problem& problem) {
   using scene::write_section;
   std::string out;
   const CellSpec none;
+  if (problem.si.radius || problem.si.viscosity || problem.si.shear_modulus) {
+    out += "[si]\n";
+    write_section(out, "si", problem, none);
+  }
   for (const char* section : {"box", "flow"}) {
     out += fmt::format("[{}]\n", section);
     write_section(out, section, problem, none);
@@ -178,7 +183,9 @@ std::string scene_key_reference() {
     }
     std::string default_text(key.default_note);
     if (default_text.empty()) default_text = fmt::format("`{}`", scene::value_text(key, key.field(problem, cell)));
-    out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.leaf(), scene::type_name(key), default_text, scene::allowed_text(key), key.unit, key.meaning);
+    std::string unit(key.unit);
+    if (const scene::SiKey* si = scene::find_si_key(key.name)) unit += fmt::format("{}{}", unit.empty() ? "" : ", or SI: ", si->unit);
+    out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.leaf(), scene::type_name(key), default_text, scene::allowed_text(key), unit, key.meaning);
   }
   return out;
 }

@@ -20,6 +20,7 @@ SeriesSummary::SeriesSummary(const LatticeParameters& lattice, double discard) :
   scene_.reynolds_number = lattice.reynolds_number;
   scene_.phi_geometric = lattice.phi_geometric;
   scene_.phi_effective = lattice.phi_effective;
+  scene_.si = lattice.si;
   for (const auto& type : lattice.cells) {
     scene_.cell_count += type.count;
     if (type.count > 0) reference_area_ = type.area;
@@ -145,6 +146,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["intrinsic_viscosity_error"] = summary.intrinsic_viscosity_error;
     json["area_ratio"] = summary.area_ratio;
   }
+  if (summary.si.length) json["unit_length_m"] = *summary.si.length;
+  if (summary.si.force) json["unit_force_N"] = *summary.si.force;
+  if (summary.si.time) json["unit_time_s"] = *summary.si.time;
   json["wall_seconds"] = summary.wall_seconds;
   json["mlups"] = summary.mlups;
   json["threads"] = summary.threads;

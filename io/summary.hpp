@@ -21,6 +21,7 @@ struct Summary {
   double phi_geometric = none;
   double phi_effective = none;
   std::int64_t cell_count = 0;
+  SiUnits si;              ///< one lattice unit in SI units, where the scene's [si] fixes it
   std::int64_t steps = 0;  ///< reached
   double strain = 0;       ///< reached
 

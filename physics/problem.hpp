@@ -17,6 +17,15 @@ enum class CollisionKind { bgk, trt };
 enum class VertexUpdate { averaged, euler };
 enum class Precision { single_precision, double_precision };
 
+/// [si] What the dimensionless scene stands for. Values that a scene gives with units ("67.7 pN") are converted with these when it is read; nothing else
+/// depends on them, and outputs state the units that follow (physics/si_units.hpp).
+struct SiSpec {
+  std::optional<double> radius;         ///< r in m
+  std::optional<double> viscosity;      ///< eta_0 in Pa s
+  std::optional<double> shear_modulus;  ///< G_s = kappa_S / 3 in N/m, of cell types with relative_stiffness 1
+  std::optional<double> shear_rate;     ///< in 1/s; reading turns it into flow.capillary_number
+};
+
 /// [box] Lengths in cell radii; z is the gradient direction and is bounded by walls when `walls` is true, x is the flow direction.
 struct BoxSpec {
   std::array<double, 3> size{20, 20, 40};
@@ -93,13 +102,14 @@ struct AccuracySpec {
 /// [run]
 struct RunSpec {
   double strain = 10;                        ///< length of the run in units of 1/shear_rate (rest: ignored)
-  std::optional<std::int64_t> steps;         ///< length in time steps instead (needed for flow.kind = "rest")
+  std::optional<std::int64_t> steps;         ///< length in time steps instead
+  std::optional<double> duration;            ///< length in units of eta_0 r / kappa_S instead; rest: one of both is needed
   std::uint64_t seed = 1;
   std::string packing;                       ///< file of a saved packing to start from; empty: pack
   double discard = 0.25;                     ///< fraction of the run left out of the means
 };
 
-/// [output] cadences in strain units (rest: in steps).
+/// [output] cadences in strain units (rest: in the unit of the length of the run, steps or eta_0 r / kappa_S).
 struct OutputSpec {
   double series_every = 0.05;
   double snapshot_every = 1.0;               ///< 0: none
@@ -109,6 +119,7 @@ struct OutputSpec {
 
 /// A complete scene.
 struct Problem {
+  SiSpec si;
   BoxSpec box;
   FlowSpec flow;
   std::vector<CellSpec> cells;

@@ -342,16 +342,18 @@ void set_flow(const Problem& problem, LatticeParameters& lattice) {
 
 void set_duration(const Problem& problem, LatticeParameters& lattice) {
   const bool rest = problem.flow.kind == FlowKind::rest;
-  if (rest && !problem.run.steps) throw InputError("run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1");
+  const auto& duration = problem.run.duration;
+  if (rest && !problem.run.steps && !duration) throw InputError("run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1 (or run.duration)");
   lattice.steps_per_strain = rest ? 0 : 1 / lattice.shear_rate;
-  const double unit = rest ? 1 : lattice.steps_per_strain;
-  const auto steps = [&](const char* key, double value) {
-    if (value * unit > 1e15) throw InputError(fmt::format("{} = {} is {:.3g} time steps, more than can be counted (1e15): lower it or raise the shear rate", key, value, value * unit));
-    return std::max<std::int64_t>(1, std::llround(value * unit));
+  const double unit = !rest ? lattice.steps_per_strain : duration ? lattice.membrane_time : 1;
+  const auto steps = [](const char* key, double value, double steps_per_unit) {
+    const double n = value * steps_per_unit;
+    if (n > 1e15) throw InputError(fmt::format("{} = {} is {:.3g} time steps, more than can be counted (1e15): lower it or raise the shear rate", key, value, n));
+    return std::max<std::int64_t>(1, std::llround(n));
   };
-  lattice.steps = problem.run.steps ? *problem.run.steps : steps("run.strain", problem.run.strain);
-  lattice.series_every = steps("output.series_every", problem.output.series_every);
-  lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every) : 0;
+  lattice.steps = problem.run.steps ? *problem.run.steps : duration ? steps("run.duration", *duration, lattice.membrane_time) : steps("run.strain", problem.run.strain, unit);
+  lattice.series_every = steps("output.series_every", problem.output.series_every, unit);
+  lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every, unit) : 0;
 }
 
 }  // namespace
@@ -363,6 +365,8 @@ LatticeParameters to_lattice(const Problem& problem) {
   set_cells(problem, lattice);
   const double kappa = ShearRateChoice(problem, lattice).choose();
   set_moduli(problem, kappa, lattice);
+  if (kappa > 0) lattice.membrane_time = lattice.viscosity * lattice.radius / kappa;
+  lattice.si = si_units(problem.si, lattice.radius, kappa, lattice.viscosity);
   set_flow(problem, lattice);
   set_duration(problem, lattice);
   return lattice;

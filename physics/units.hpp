@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/problem.hpp"
+#include "physics/si_units.hpp"
 
 namespace corpuscle {
 
@@ -59,6 +60,8 @@ struct LatticeParameters {
   double phi_effective = 0;
   double contact_strength = 0;         ///< kappa_int
   double contact_range = 0;            ///< d_0
+  double membrane_time = 0;            ///< eta_0 r / kappa_S in time steps; 0 without cells
+  SiUnits si;                          ///< one lattice unit in SI units
   std::int64_t steps = 0;              ///< of the whole run
   double steps_per_strain = 0;         ///< 0 at rest
   std::int64_t series_every = 0;       ///< steps
