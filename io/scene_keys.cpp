@@ -18,11 +18,6 @@ constexpr double many_steps = 1e15;
 
 // name | member | range | choices | unit | default when it isn't the constant of problem.hpp | meaning
 const Key table[] = {
-    {"si.radius", CORPUSCLE_FIELD(P.si.radius), between(1e-9, 1e-2), "", "", "none", "Large radius r of a cell (with relative_radius = 1)"},
-    {"si.viscosity", CORPUSCLE_FIELD(P.si.viscosity), between(1e-6, 1e3), "", "", "none", "Viscosity η₀ of the fluid"},
-    {"si.shear_modulus", CORPUSCLE_FIELD(P.si.shear_modulus), between(1e-9, 1e3), "", "", "none", "G_s = κ_S/3, the surface shear modulus (with relative_stiffness = 1)"},
-    {"si.shear_rate", CORPUSCLE_FIELD(P.si.shear_rate), positive(1e9), "", "", "none", "γ̇, instead of a capillary number; the merged scene has the capillary number"},
-
     {"box.size", CORPUSCLE_FIELD(P.box.size), positive(1e4), "", "cell radii", "",
      "Length, width and height; rounded to whole lattice nodes. x is the flow direction, z the gradient direction"},
     {"box.walls", CORPUSCLE_FIELD(P.box.walls), any, "", "", "",
@@ -100,6 +95,11 @@ const Key table[] = {
      "Cadence of the snapshots; 0: none"},
     {"output.trajectories", CORPUSCLE_FIELD(P.output.trajectories), any, "", "", "", "Data of each cell at the cadence of the series"},
     {"output.fluid", CORPUSCLE_FIELD(P.output.fluid), any, "", "", "", "Velocity field at the cadence of the snapshots"},
+
+    {"si.radius", CORPUSCLE_FIELD(P.si.radius), between(1e-9, 1e-2), "", "", "none", "Large radius r of a cell (with relative_radius = 1)"},
+    {"si.viscosity", CORPUSCLE_FIELD(P.si.viscosity), between(1e-6, 1e3), "", "", "none", "Viscosity η₀ of the fluid"},
+    {"si.shear_modulus", CORPUSCLE_FIELD(P.si.shear_modulus), between(1e-9, 1e3), "", "", "none", "G_s = κ_S/3, the surface shear modulus (with relative_stiffness = 1)"},
+    {"si.shear_rate", CORPUSCLE_FIELD(P.si.shear_rate), positive(1e9), "", "", "none", "γ̇, instead of a capillary number; the merged scene has the capillary number"},
 };
 #undef CORPUSCLE_FIELD
 

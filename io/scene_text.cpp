@@ -104,9 +104,10 @@ std::string_view nearest_key(std::string_view name) {
   const std::string_view leaf = dot == std::string_view::npos ? name : name.substr(dot + 1);
   const std::string_view section = dot == std::string_view::npos ? std::string_view{} : name.substr(0, dot);
   // A leaf in the wrong section costs one edit more, so that flow.radius finds accuracy.radius and box.sise finds box.size. For an unknown
-  // section its own spelling decides between equal leaves.
+  // section its own spelling decides between equal leaves, for a known one the order of the table.
+  const bool known = is_section(section);
   const auto cost = [&](const Key& key) {
-    const int other_section = key.section() == section ? 0 : 10 + edit_distance(section, key.section());
+    const int other_section = key.section() == section ? 0 : 10 + (known ? 0 : edit_distance(section, key.section()));
     return 10 * edit_distance(leaf, key.leaf()) + other_section;
   };
   return std::min_element(keys().begin(), keys().end(), [&](const Key& a, const Key& b) { return cost(a) < cost(b); })->name;

@@ -80,10 +80,10 @@ TEST_CASE("Stretching forces cost a kernel and memory only where a scene has the
 }
 
 TEST_CASE("A stretched cell in a periodic fluid at rest grows along the force, gains no momentum, and its stress leaves the external force out", "[suspension]") {
-  const auto r = start("[box]\nsize = [4, 4, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 4\nprecision = 'double'\nshear_modulus = 0.02\n[run]\nsteps = 600\n[[cells]]\nshape = 'sphere'\n"
+  const auto r = start("[box]\nsize = [4, 4, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 4\nprecision = 'double'\nshear_modulus = 0.02\n[run]\nsteps = 4000\n[[cells]]\nshape = 'sphere'\n"
                        "count = 1\nstretch = { force = 0.5, patch_diameter = 0.8 }\n");
   Sample sample;
-  for (int i = 0; i < 600; ++i) sample = r.suspension->step_and_measure();
+  for (int i = 0; i < 4000; ++i) sample = r.suspension->step_and_measure();
   const auto& cell = sample.cells[0];
   CHECK(cell.extent[0] > 8.5);
   CHECK(cell.extent[1] < 7.9);
