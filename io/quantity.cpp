@@ -19,7 +19,8 @@ struct Prefix {
   double value;
 };
 // The micro sign and the Greek letter look the same.
-constexpr Prefix prefixes[] = {{"", 1}, {"f", 1e-15}, {"p", 1e-12}, {"n", 1e-9}, {"u", 1e-6}, {"\u00b5", 1e-6}, {"\u03bc", 1e-6}, {"m", 1e-3}, {"c", 1e-2}, {"k", 1e3}, {"M", 1e6}};
+constexpr Prefix prefixes[] = {{"", 1},           {"f", 1e-15}, {"p", 1e-12}, {"n", 1e-9}, {"u", 1e-6},
+                               {"\u00b5", 1e-6}, {"\u03bc", 1e-6}, {"m", 1e-3}, {"c", 1e-2}, {"k", 1e3}, {"M", 1e6}};
 
 /// "uN" or "m^2", without its sign in the product.
 std::optional<Quantity> parse_factor(std::string_view text) {

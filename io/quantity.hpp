@@ -13,8 +13,8 @@ struct Quantity {
   Dimension dimension{};
 };
 
-/// A number and a unit: factors m, g, s, N, Pa, J, Hz, P (poise), dyn, each with a prefix (f p n u µ m c k M) and an exponent (m^2, s^-1) if needed; separated by
-/// spaces, * or ·; what follows a / is divided by: "J/m^2", "1/s". Empty when the text is none.
+/// A number and a unit: factors m, g, s, N, Pa, J, Hz, P (poise), dyn, each with a prefix (f p n u µ m c k M) and an exponent (m^2, s^-1) if needed;
+/// separated by spaces, * or ·; what follows a / is divided by: "J/m^2", "1/s". Empty when the text is none.
 std::optional<Quantity> parse_quantity(std::string_view text);
 
 }  // namespace corpuscle

@@ -115,7 +115,9 @@ class Reader {
     const SiKey* si = find_si_key(key.name);
     const auto quantity = node.is_string() && si != nullptr ? parse_quantity(node.as_string()->get()) : std::nullopt;
     if (!quantity) wrong_type<double>(key, path, node);
-    if (quantity->dimension != si->dimension) fail(path, node, fmt::format("= {} has another dimension: it must be in {}, such as \"{}\"", shown(node), si->unit, si->example));
+    if (quantity->dimension != si->dimension) {
+      fail(path, node, fmt::format("= {} has another dimension: it must be in {}, such as \"{}\"", shown(node), si->unit, si->example));
+    }
     waiting_.push_back({&key, si, path, &node, cell_, field, quantity->value});
     return 0;
   }
@@ -148,7 +150,8 @@ class Reader {
     const bool whole_number = type_name(key) == "whole number";
     const std::string allowed = fmt::format("a {} {}", whole_number ? "whole number" : "number", key.range.text());
     if (node.is_string() && !key.range.contains(value)) {
-      fail(path, node, fmt::format("= {} is {:.4g}{}{}, out of range: it must be {}", shown(node), value, key.unit.empty() ? " in SI units" : " ", key.unit, allowed));
+      const std::string unit = key.unit.empty() ? "in SI units" : std::string(key.unit);
+      fail(path, node, fmt::format("= {} is {:.4g} {}, out of range: it must be {}", shown(node), value, unit, allowed));
     }
     if (!std::isfinite(value)) fail(path, node, fmt::format("= {} must be {}", shown(node), allowed));
     if (key.range.contains(value)) return value;

@@ -82,7 +82,9 @@ class Checker {
     for (const char* name : {"flow.capillary_number", "flow.capillary_number_G"}) {
       if (has(name)) refuse(fmt::format("contradicts {}: give one of both", said(name)));
     }
-    if (has("accuracy.shear_modulus") && has("accuracy.shear_rate")) refuse("contradicts accuracy.shear_modulus and accuracy.shear_rate together, which fix the capillary number already: remove one of the three");
+    if (has("accuracy.shear_modulus") && has("accuracy.shear_rate")) {
+      refuse("contradicts accuracy.shear_modulus and accuracy.shear_rate together, which fix the capillary number already: remove one of the three");
+    }
     std::string missing;
     const double ca = capillary_number(p_.si, missing);
     if (!missing.empty()) refuse(fmt::format("needs {} to give a capillary number", missing));
@@ -161,7 +163,9 @@ class Checker {
       lengths = name;
     }
     if (!rest) return;
-    if (has("run.strain")) fail("run.strain", fmt::format("{} has no meaning with flow.kind = \"rest\": give run.steps or run.duration instead", said("run.strain")));
+    if (has("run.strain")) {
+      fail("run.strain", fmt::format("{} has no meaning with flow.kind = \"rest\": give run.steps or run.duration instead", said("run.strain")));
+    }
     if (lengths.empty()) fail("", "run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1 (or run.duration)");
     // At rest there is no strain to count in: cadences have the unit of the length.
     if (p_.run.duration) {

@@ -5,7 +5,8 @@
 namespace corpuscle::scene {
 namespace {
 
-constexpr Dimension metre{0, 1, 0}, second{0, 0, 1}, newton{1, 1, -2}, newton_per_metre{1, 0, -2}, joule{1, 2, -2}, pascal_second{1, -1, -1}, per_second{0, 0, -1};
+constexpr Dimension metre{0, 1, 0}, second{0, 0, 1}, per_second{0, 0, -1}, newton{1, 1, -2}, newton_per_metre{1, 0, -2}, joule{1, 2, -2};
+constexpr Dimension pascal_second{1, -1, -1};
 
 /// The value, or 0 and its key in the list of what is missing.
 double given(const std::optional<double>& value, const char* key, std::string& missing) {
@@ -38,6 +39,10 @@ double one(const Problem&, const CellSpec&, std::string&) { return 1; }
 double length(const Problem& p, const CellSpec&, std::string& missing) { return radius(p.si, missing); }
 double length_of_type(const Problem& p, const CellSpec& c, std::string& missing) { return radius(p.si, missing) * c.relative_radius; }
 double kappa_of_type(const Problem& p, const CellSpec& c, std::string& missing) { return kappa(p.si, missing) * c.relative_stiffness; }
+double shear_modulus(const Problem& p, const CellSpec&, std::string& missing) { return kappa(p.si, missing) / 3; }
+double force_of_type(const Problem& p, const CellSpec& c, std::string& missing) { return kappa_of_type(p, c, missing) * length_of_type(p, c, missing); }
+double energy_of_type(const Problem& p, const CellSpec& c, std::string& missing) { return force_of_type(p, c, missing) * length_of_type(p, c, missing); }
+double duration(const Problem& p, const CellSpec&, std::string& missing) { return membrane_time(p.si, missing); }
 
 const SiKey table[] = {
     {"si.radius", "m", "3.91 um", metre, one},
@@ -47,13 +52,12 @@ const SiKey table[] = {
     {"box.size", "m", "20 um", metre, length},
     {"cells.*.position", "m", "20 um", metre, length},
     {"cells.*.relative_radius", "m", "3 um", metre, length, true},
-    {"cells.*.relative_stiffness", "N/m, G_s", "5.3 uN/m", newton_per_metre, [](const Problem& p, const CellSpec&, std::string& missing) { return kappa(p.si, missing) / 3; }, true},
-    {"cells.*.membrane.bending", "J", "2e-19 J", joule,
-     [](const Problem& p, const CellSpec& c, std::string& missing) { return kappa_of_type(p, c, missing) * length_of_type(p, c, missing) * length_of_type(p, c, missing); }},
+    {"cells.*.relative_stiffness", "N/m, G_s", "5.3 uN/m", newton_per_metre, shear_modulus, true},
+    {"cells.*.membrane.bending", "J", "2e-19 J", joule, energy_of_type},
     {"cells.*.membrane.global_area", "N/m", "1 mN/m", newton_per_metre, kappa_of_type},
-    {"cells.*.stretch.force", "N", "67.7 pN", newton, [](const Problem& p, const CellSpec& c, std::string& missing) { return kappa_of_type(p, c, missing) * length_of_type(p, c, missing); }},
+    {"cells.*.stretch.force", "N", "67.7 pN", newton, force_of_type},
     {"cells.*.stretch.patch_diameter", "m", "2 um", metre, length_of_type},
-    {"run.duration", "s", "50 ms", second, [](const Problem& p, const CellSpec&, std::string& missing) { return membrane_time(p.si, missing); }, true},
+    {"run.duration", "s", "50 ms", second, duration, true},
     {"output.series_every", "s", "1 ms", second, cadence},
     {"output.snapshot_every", "s", "10 ms", second, cadence},
 };

@@ -63,9 +63,11 @@ TEST_CASE("Quantities are read with prefixes, products, quotients and exponents"
 }
 
 TEST_CASE("SI values become the dimensionless keys", "[si]") {
-  const Problem p = parse_scene(scales + rest + cell + "position = ['8 um', 3, 3]\nmembrane = { bending = '2.4e-19 J', global_area = '3 mN/m' }\nstretch = { force = '30 pN', patch_diameter = '2 um' }\n" +
-                                    "[[cells]]\nshape = 'sphere'\ncount = 1\nposition = [5, 5, 5]\nmembrane = { bending = '2.4e-19 J' }\nrelative_radius = '2 um'\nrelative_stiffness = '10 uN/m'\n" +
-                                    "stretch = { force = '60 pN', patch_diameter = '1 um' }\n[output]\nseries_every = '3.2 ms'\n", "s.toml");
+  const std::string first = "[[cells]]\ncount = 1\nposition = ['8 um', 3, 3]\nmembrane = { bending = '2.4e-19 J', global_area = '3 mN/m' }\n"
+                            "stretch = { force = '30 pN', patch_diameter = '2 um' }\n";
+  const std::string second = "[[cells]]\nshape = 'sphere'\ncount = 1\nposition = [5, 5, 5]\nmembrane = { bending = '2.4e-19 J' }\nrelative_radius = '2 um'\n"
+                             "relative_stiffness = '10 uN/m'\nstretch = { force = '60 pN', patch_diameter = '1 um' }\n";
+  const Problem p = parse_scene(scales + rest + first + second + "[output]\nseries_every = '3.2 ms'\n", "s.toml");
   CHECK(p.box.size[0] == Approx(6));
   CHECK(p.box.size[1] == 6);
   CHECK(p.run.duration.value() == Approx(100));
@@ -122,7 +124,9 @@ TEST_CASE("run.duration counts eta_0 r / kappa_S also in a flow", "[si]") {
 }
 
 TEST_CASE("A merged scene with SI values reads back to the same problem", "[si]") {
-  for (const std::string& text : {scales + rest + cell + "stretch = { force = '30 pN' }\n", scales + "shear_rate = 250\n" + cell + "membrane = { bending = '2e-19 J' }\n"}) {
+  const std::string at_rest = scales + rest + cell + "stretch = { force = '30 pN' }\n";
+  const std::string in_flow = scales + "shear_rate = 250\n" + cell + "membrane = { bending = '2e-19 J' }\n";
+  for (const std::string& text : {at_rest, in_flow}) {
     const Problem p = parse_scene(text, "s.toml");
     const std::string merged = to_toml(p);
     INFO(merged);

@@ -14,7 +14,8 @@ using namespace corpuscle;
 namespace {
 
 const std::string scene =
-    "[box]\nsize = [6, 6, 6]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 8\nshear_modulus = 0.02\n[run]\nsteps = 10\n[[cells]]\nname = 'still'\ncount = 1\nposition = [1.5, 1.5, 1.5]\n"
+    "[box]\nsize = [6, 6, 6]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 8\nshear_modulus = 0.02\n[run]\nsteps = 10\n"
+    "[[cells]]\nname = 'still'\ncount = 1\nposition = [1.5, 1.5, 1.5]\n"
     "[[cells]]\nname = 'pulled'\nrelative_radius = 0.8\nrelative_stiffness = 1.5\ncount = 1\nposition = [4, 4, 4]\n";
 
 struct Result {
