@@ -7,23 +7,29 @@
 namespace corpuscle {
 namespace {
 
+// Powers of ten stay integers until the end: 5 / 1e6 is the double nearest to 5e-6, 5 * 1e-6 is not.
 struct Unit {
   std::string_view name;
-  double value;
+  int power;
   Dimension dimension;
 };
-constexpr Unit units[] = {{"m", 1, {0, 1, 0}},      {"g", 1e-3, {1, 0, 0}},   {"s", 1, {0, 0, 1}},    {"N", 1, {1, 1, -2}},  {"Pa", 1, {1, -1, -2}},
-                          {"J", 1, {1, 2, -2}},     {"Hz", 1, {0, 0, -1}},    {"P", 0.1, {1, -1, -1}}, {"dyn", 1e-5, {1, 1, -2}}};
+constexpr Unit units[] = {{"m", 0, {0, 1, 0}},  {"g", -3, {1, 0, 0}},  {"s", 0, {0, 0, 1}},   {"N", 0, {1, 1, -2}},   {"Pa", 0, {1, -1, -2}},
+                          {"J", 0, {1, 2, -2}}, {"Hz", 0, {0, 0, -1}}, {"P", -1, {1, -1, -1}}, {"dyn", -5, {1, 1, -2}}};
 struct Prefix {
   std::string_view name;
-  double value;
+  int power;
 };
 // The micro sign and the Greek letter look the same.
-constexpr Prefix prefixes[] = {{"", 1},           {"f", 1e-15}, {"p", 1e-12}, {"n", 1e-9}, {"u", 1e-6},
-                               {"\u00b5", 1e-6}, {"\u03bc", 1e-6}, {"m", 1e-3}, {"c", 1e-2}, {"k", 1e3}, {"M", 1e6}};
+constexpr Prefix prefixes[] = {{"", 0},        {"f", -15},     {"p", -12}, {"n", -9}, {"u", -6}, {"\u00b5", -6},
+                               {"\u03bc", -6}, {"m", -3},      {"c", -2},  {"k", 3},  {"M", 6}};
+
+struct Factor {
+  int power = 0;
+  Dimension dimension{};
+};
 
 /// "uN" or "m^2", without its sign in the product.
-std::optional<Quantity> parse_factor(std::string_view text) {
+std::optional<Factor> parse_factor(std::string_view text) {
   int exponent = 1;
   if (const std::size_t hat = text.find('^'); hat != std::string_view::npos) {
     const char* end = text.data() + text.size();
@@ -35,9 +41,9 @@ std::optional<Quantity> parse_factor(std::string_view text) {
     if (!text.starts_with(prefix.name)) continue;
     for (const Unit& unit : units) {
       if (text.substr(prefix.name.size()) != unit.name) continue;
-      Quantity q{std::pow(prefix.value * unit.value, exponent), unit.dimension};
-      for (int& d : q.dimension) d *= exponent;
-      return q;
+      Factor factor{(prefix.power + unit.power) * exponent, unit.dimension};
+      for (int& d : factor.dimension) d *= exponent;
+      return factor;
     }
   }
   return std::nullopt;
@@ -59,7 +65,7 @@ std::optional<Quantity> parse_quantity(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.value);
   if (error != std::errc{} || !std::isfinite(result.value)) return std::nullopt;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  int factors = 0;
+  int factors = 0, power = 0;
   for (bool divide = false; !text.empty();) {
     if (const std::size_t length = separator(text); length > 0) {
       text.remove_prefix(length);
@@ -78,11 +84,13 @@ std::optional<Quantity> parse_quantity(std::string_view text) {
     if (name == "1" && factors == 0 && !divide) continue;  // "100 1/s"
     const auto factor = parse_factor(name);
     if (!factor) return std::nullopt;
-    result.value *= divide ? 1 / factor->value : factor->value;
+    power += divide ? -factor->power : factor->power;
     for (std::size_t i = 0; i < 3; ++i) result.dimension[i] += (divide ? -1 : 1) * factor->dimension[i];
     ++factors;
   }
   if (factors == 0) return std::nullopt;
+  result.value = power < 0 ? result.value / std::pow(10.0, -power) : result.value * std::pow(10.0, power);
+  if (!std::isfinite(result.value)) return std::nullopt;
   return result;
 }
 

@@ -155,6 +155,9 @@ class Reader {
     }
     if (!std::isfinite(value)) fail(path, node, fmt::format("= {} must be {}", shown(node), allowed));
     if (key.range.contains(value)) return value;
+    if (const SiKey* si = find_si_key(key.name); si != nullptr && key.section() == "si") {
+      fail(path, node, fmt::format("= {} {} is out of range: it must be {}; or give it with its unit, such as \"{}\"", shown(node), si->unit, allowed, si->example));
+    }
     const bool low = value <= key.range.low;
     // An open end has no nearest allowed value to name.
     const std::string hint = low ? (key.range.low_open ? "" : fmt::format("; the nearest allowed value is {}", key.range.low))

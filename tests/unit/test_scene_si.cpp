@@ -56,6 +56,8 @@ TEST_CASE("Quantities are read with prefixes, products, quotients and exponents"
   check_quantity("2 g m^-1 s^-2", 2e-3, {1, -1, -2});
   check_quantity(" 5 m ", 5, {0, 1, 0});  // metre, not milli
   check_quantity("5 mm", 5e-3, {0, 1, 0});
+  CHECK(parse_quantity("5 uN/m")->value == 5e-6);  // exactly: merged scenes stay readable
+  CHECK(parse_quantity("3.91 um")->value == 3.91e-6);
   for (const char* none : {"", "um", "5", "5 5 m", "5 parsec", "5 m/s/s", "5 m^", "5 m^x", "5 m^99", "big", "inf m", "nan m", "5 m//s", "1e999 m", "5 /"}) {
     INFO(none);
     CHECK_FALSE(parse_quantity(none));
@@ -154,6 +156,7 @@ TEST_CASE("Bad SI values are refused in one sentence with key, value and what is
       {scales + cell + "stretch = { force = '30 pm' }\n" + rest, {"cells.0.stretch.force = \"30 pm\"", "another dimension", "in N"}},
       {scales + cell + "stretch = { force = '30 MN' }\n" + rest, {"cells.0.stretch.force = \"30 MN\"", "5e+17 κ_S r", "out of range", "<= 10000"}},
       {"[si]\nradius = '4 m'\n" + cell + rest, {"si.radius = \"4 m\" is 4 in SI units", "out of range"}},
+      {"[si]\nradius = 3.91\n" + cell + rest, {"si.radius = 3.91 m is out of range", "such as \"3.91 um\""}},
       {"[si]\nradius = '4 um'\n" + cell + "[accuracy]\nradius = '4 um'\n", {"accuracy.radius = \"4 um\"", "must be a number"}},
       {scales + "shear_rate = 250\n[flow]\ncapillary_number = 0.1\n" + cell, {"s.toml:5", "si.shear_rate = 250", "contradicts flow.capillary_number = 0.1"}},
       {scales + "shear_rate = 250\n[accuracy]\nshear_modulus = 0.01\nshear_rate = 1e-5\n" + cell, {"si.shear_rate = 250", "contradicts accuracy.shear_modulus"}},
