@@ -11,7 +11,7 @@ using namespace corpuscle;
 
 TEST_CASE("A red cell stretched by 193 pN has the diameters that Mills et al. measured", "[stretching]") {
   // Mills et al., Mech. Chem. Biosyst. 1, 169 (2004): 15.29 +- 1 um and 4.27 +- 0.7 um. The error bars of the experiment are the tolerance; the
-  // simulation's errors are smaller: resolution 0.3 um (r = 6 against 8), the rest of the relaxation 0.05 um after 15 ms.
+  // simulation's errors are smaller: 0.3 um by resolution (r = 6 against 8), under 0.05 um by what is left of the relaxation after 15 ms.
   const auto root = std::filesystem::absolute(std::filesystem::path(__FILE__)).parent_path().parent_path().parent_path();
   const Problem problem = read_scene((root / "scenes" / "stretching.toml").string(), {"cells.0.stretch.force=193 pN", "run.duration=15 ms"});
   const LatticeParameters lattice = to_lattice(problem);
