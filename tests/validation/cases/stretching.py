@@ -6,7 +6,7 @@ error, tolerance, pass, resolution, seconds, drift (over the last fifth). Length
 Reference: axial and transverse diameters of Mills, Qie, Dao, Lim, Suresh, Mech. Chem. Biosyst. 1, 169 (2004). Tolerance: the error bars of the experiment,
 +-1 um (axial) and +-0.7 um (transverse). Errors of the simulation are smaller: r = 6 and r = 8 differ by 0.3 um at most (axial, 193 pN; 0.05 um transverse), and
 over the last fifth of a run diameters change by less than 0.02 um. The model matters more: with area_dilation = 10 in place of 400 the transverse diameter is
-up to 0.6 um larger, outside the bars from 47.5 to 193 pN, since the real membrane keeps its area locally. Moduli are published ones (G_s = 5.3 uN/m,
+up to 0.8 um larger, outside the bars from 47.5 to 193 pN (G_s = 5.5 uN/m); the real membrane keeps its area locally. Moduli are published ones (G_s = 5.3 uN/m,
 bending 2e-19 J); nothing is fitted.
 """
 import argparse
