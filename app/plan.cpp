@@ -26,6 +26,8 @@ std::vector<std::string> active_models(const Problem& problem, const LatticePara
     if (type.moduli.volume > 0) terms += " + volume";
     models.push_back("membrane of " + type.name + ": " + terms);
   }
+  for (const auto& type : lattice.cells)
+    if (type.stretching_force > 0) models.push_back("external stretching force on " + type.name);
   if (problem.contact.enabled) models.push_back("contact repulsion between cells and with walls");
   return models;
 }
@@ -47,6 +49,10 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
   j["phi_effective"] = l.phi_effective;
   j["contact_strength"] = l.contact_strength;
   j["contact_range"] = l.contact_range;
+  j["membrane_time"] = l.membrane_time;
+  if (l.si.length) j["unit_length_m"] = *l.si.length;
+  if (l.si.force) j["unit_force_N"] = *l.si.force;
+  if (l.si.time) j["unit_time_s"] = *l.si.time;
   j["steps"] = l.steps;
   j["steps_per_strain"] = l.steps_per_strain;
   j["series_every_steps"] = l.series_every;
@@ -72,13 +78,28 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
                           {"area_dilation_modulus", t.moduli.area_dilation},
                           {"bending_modulus", t.moduli.bending},
                           {"global_area_modulus", t.moduli.global_area},
-                          {"volume_modulus", t.moduli.volume}});
+                          {"volume_modulus", t.moduli.volume},
+                          {"stretching_force", t.stretching_force}});
   j["models"] = active_models(problem, l);
   j["predicted_bytes"] = bytes;
   j["predicted_seconds"] = seconds;
   j["seconds_per_node"] = c.per_node;
   j["seconds_per_vertex"] = c.per_vertex;
   return j;
+}
+
+/// What the lattice stands for, as far as [si] says it.
+void print_si(const LatticeParameters& l) {
+  const SiUnits& si = l.si;
+  if (!si.length) return;
+  fmt::print("SI units    1 lattice unit = {:.4g} m", *si.length);
+  if (si.time) fmt::print(", 1 step = {:.4g} s", *si.time);
+  if (si.force) fmt::print(", unit of force = {:.4g} N", *si.force);
+  fmt::print("\n");
+  if (si.time && l.shear_rate > 0) fmt::print("            shear rate = {:.4g} 1/s\n", l.shear_rate / *si.time);
+  if (si.time) fmt::print("            length of the run = {:.4g} s\n", double(l.steps) * *si.time);
+  for (const auto& t : l.cells)
+    if (si.force && t.stretching_force > 0) fmt::print("            stretching force on {} = {:.4g} N\n", t.name, t.stretching_force * *si.force);
 }
 
 void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes, double seconds, double per_step) {
@@ -109,6 +130,7 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
     if (problem.accuracy.cell_size == CellSize::hydrodynamic) fmt::print("{:.4f} nominal, ", l.phi_nominal);
     fmt::print("{:.4f} effective\n", l.phi_effective);
   }
+  print_si(l);
   bool first = true;
   for (const auto& model : active_models(problem, l)) {
     fmt::print("{}{}\n", first ? "Models      " : "            ", model);
@@ -116,7 +138,7 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
   }
   const double nodes = l.box_volume();
   fmt::print("Run         {} steps", l.steps);
-  if (l.steps_per_strain > 0) fmt::print(" = {:g} strain units of {:.0f} steps", problem.run.strain, l.steps_per_strain);
+  if (l.steps_per_strain > 0) fmt::print(" = {:g} strain units of {:.0f} steps", double(l.steps) / l.steps_per_strain, l.steps_per_strain);
   fmt::print("; series every {} steps", l.series_every);
   if (l.snapshot_every > 0) fmt::print(", snapshot every {}", l.snapshot_every);
   fmt::print("\nMemory      {:.1f} MiB ({:.0f} bytes a node, {} vertices)\n", double(bytes) / (1 << 20), double(bytes) / nodes, vertices);

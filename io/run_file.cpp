@@ -65,6 +65,7 @@ const std::vector<CellQuantity>& cell_quantities() {
        "- sum F_a r_b over the vertices; row a: force on the fluid, column b: position"},
       {"volume", "dx^3", {}, [](const CellSample& c) { return &c.volume; }, "enclosed volume"},
       {"area", "dx^2", {}, [](const CellSample& c) { return &c.area; }, "surface area"},
+      {"extent", "dx", {3}, [](const CellSample& c) { return c.extent.data(); }, "edges of the bounding box of the vertices along x, y and z"},
   };
   return table;
 }
@@ -113,6 +114,7 @@ void write_cell_type(hdf5::File& file, const std::string& group, const CellTypeL
   number("bending_constant", type.moduli.bending_constant);
   number("global_area_modulus", type.moduli.global_area);
   number("volume_modulus", type.moduli.volume);
+  number("stretching_force", type.stretching_force);
 }
 
 void write_lattice(hdf5::File& file, const LatticeParameters& lattice) {
@@ -135,6 +137,10 @@ void write_lattice(hdf5::File& file, const LatticeParameters& lattice) {
   number("phi_effective", lattice.phi_effective);
   number("contact_strength", lattice.contact_strength);
   number("contact_range", lattice.contact_range);
+  number("membrane_time", lattice.membrane_time);
+  if (lattice.si.length) number("unit_length_m", *lattice.si.length);
+  if (lattice.si.force) number("unit_force_N", *lattice.si.force);
+  if (lattice.si.time) number("unit_time_s", *lattice.si.time);
   number("steps_per_strain", lattice.steps_per_strain);
   integer("steps", lattice.steps);
   integer("series_every", lattice.series_every);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "core/error.hpp"
 #include "io/scene_check.hpp"
 #include "io/scene_keys.hpp"
+#include "io/scene_si.hpp"
 #include "io/scene_toml.hpp"
 
 namespace corpuscle {
@@ -35,6 +37,7 @@ class Reader {
     }
     apply_preset(problem_.accuracy, std::string(problem_.accuracy.preset));  // before the knobs, which win
     read_table(document_.root, "", none_);
+    convert_quantities();
     return std::move(problem_);
   }
 
@@ -71,6 +74,7 @@ class Reader {
   }
 
   void read_value(const Key& key, const std::string& path, const toml::node& node, CellSpec& cell) {
+    cell_ = &cell;
     std::visit([&](auto* field) { assign(*field, key, path, node); }, key.field(problem_, cell));
     given_[path] = where(document_, path, &node);
   }
@@ -82,11 +86,11 @@ class Reader {
     else if constexpr (std::is_same_v<T, std::string>) field = text(key, path, node);
     else if constexpr (std::is_enum_v<T>) field = static_cast<T>(choice(key, path, text(key, path, node), node));
     else if constexpr (std::is_integral_v<T>) field = static_cast<T>(whole(key, path, node));
-    else if constexpr (std::is_same_v<T, double>) field = number(key, path, node);
+    else if constexpr (std::is_same_v<T, double>) field = number_or_quantity(key, path, node, &field);
     else {
       const toml::array* list = node.as_array();
       if (list == nullptr || list->size() != field.size()) wrong_type<int>(key, path, node);
-      for (std::size_t i = 0; i < field.size(); ++i) field[i] = number(key, fmt::format("{}[{}]", path, i), *list->get(i));
+      for (std::size_t i = 0; i < field.size(); ++i) field[i] = number_or_quantity(key, fmt::format("{}[{}]", path, i), *list->get(i), &field[i]);
     }
   }
 
@@ -105,9 +109,28 @@ class Reader {
     fail(path, node, fmt::format("= {} isn't known; allowed: {}; the nearest is \"{}\"", shown(node), fmt::join(choices, ", "), nearest(value, choices)));
   }
 
-  double number(const Key& key, const std::string& path, const toml::node& node) {
-    if (!node.is_number()) wrong_type<double>(key, path, node);
-    return checked(key, path, node, *node.value<double>());
+  /// A value with a unit waits until all that its conversion depends on is read.
+  double number_or_quantity(const Key& key, const std::string& path, const toml::node& node, double* field) {
+    if (node.is_number()) return checked(key, path, node, *node.value<double>());
+    const SiKey* si = find_si_key(key.name);
+    const auto quantity = node.is_string() && si != nullptr ? parse_quantity(node.as_string()->get()) : std::nullopt;
+    if (!quantity) wrong_type<double>(key, path, node);
+    if (quantity->dimension != si->dimension) {
+      fail(path, node, fmt::format("= {} has another dimension: it must be in {}, such as \"{}\"", shown(node), si->unit, si->example));
+    }
+    waiting_.push_back({&key, si, path, &node, cell_, field, quantity->value});
+    return 0;
+  }
+
+  void convert_quantities() {
+    std::stable_partition(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return w.key->section() == "si" || w.si->first; });
+    std::stable_partition(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return w.key->section() == "si"; });
+    for (const Waiting& w : waiting_) {
+      std::string missing;
+      const double scale = w.si->scale(problem_, *w.cell, missing);
+      if (!missing.empty()) fail(w.path, *w.node, fmt::format("= {} needs {} to be converted: give it, or a number without a unit", shown(*w.node), missing));
+      *w.field = checked(*w.key, w.path, *w.node, w.value / scale);
+    }
   }
 
   std::int64_t whole(const Key& key, const std::string& path, const toml::node& node) {
@@ -126,8 +149,15 @@ class Reader {
   double checked(const Key& key, const std::string& path, const toml::node& node, double value) {
     const bool whole_number = type_name(key) == "whole number";
     const std::string allowed = fmt::format("a {} {}", whole_number ? "whole number" : "number", key.range.text());
+    if (node.is_string() && !key.range.contains(value)) {
+      const std::string unit = key.unit.empty() ? "in SI units" : std::string(key.unit);
+      fail(path, node, fmt::format("= {} is {:.4g} {}, out of range: it must be {}", shown(node), value, unit, allowed));
+    }
     if (!std::isfinite(value)) fail(path, node, fmt::format("= {} must be {}", shown(node), allowed));
     if (key.range.contains(value)) return value;
+    if (const SiKey* si = find_si_key(key.name); si != nullptr && key.section() == "si") {
+      fail(path, node, fmt::format("= {} {} is out of range: it must be {}; or give it with its unit, such as \"{}\"", shown(node), si->unit, allowed, si->example));
+    }
     const bool low = value <= key.range.low;
     // An open end has no nearest allowed value to name.
     const std::string hint = low ? (key.range.low_open ? "" : fmt::format("; the nearest allowed value is {}", key.range.low))
@@ -138,16 +168,31 @@ class Reader {
   template <class T>
   [[noreturn]] T wrong_type(const Key& key, const std::string& path, const toml::node& node) {
     const std::string type = type_name(key);
-    fail(path, node, fmt::format("= {} must be {}{}{}", shown(node), type == "true or false" ? "" : "a ", type,
-                                 key.choices.empty() ? "" : fmt::format(", one of: {}", fmt::join(choice_list(key), ", "))));
+    const SiKey* si = find_si_key(key.name);
+    fail(path, node, fmt::format("= {} must be {}{}{}{}", shown(node), type == "true or false" ? "" : "a ", type,
+                                 key.choices.empty() ? "" : fmt::format(", one of: {}", fmt::join(choice_list(key), ", ")),
+                                 si == nullptr ? "" : fmt::format(", or a quantity with its unit such as \"{}\"", si->example)));
   }
 
   [[noreturn]] void fail(const std::string& path, const toml::node& node, const std::string& problem) {
     throw InputError(fmt::format("{}{} {}", where(document_, path, &node), one_line(path, 120), problem));
   }
 
+  /// A value with a unit, to be converted once the scene is read.
+  struct Waiting {
+    const Key* key;
+    const SiKey* si;
+    std::string path;
+    const toml::node* node;
+    const CellSpec* cell;
+    double* field;
+    double value;  ///< in SI units
+  };
+
   const Document& document_;
   Problem problem_;
+  std::vector<Waiting> waiting_;
+  CellSpec* cell_ = nullptr;  // of the key that is being read
   CellSpec none_;  // target for keys outside [[cells]], never written
   Given given_;
 };

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "io/scene_keys.hpp"
+#include "io/scene_si.hpp"
 #include "io/scene_toml.hpp"
 
 namespace corpuscle::scene {
@@ -66,9 +67,31 @@ class Checker {
       }
     }
     const bool fixed = has("accuracy.shear_modulus") && has("accuracy.shear_rate");
-    if (!rest && !p_.cells.empty() && !has(names[0]) && !has(names[1]) && !fixed) {
+    if (has("si.shear_rate")) shear_rate();
+    if (!rest && !p_.cells.empty() && !p_.flow.capillary_number && !has(names[1]) && !fixed) {
       fail("", "flow.capillary_number is missing: cells in a flow need it, a number > 0 such as 0.081 (or flow.capillary_number_G)");
     }
+  }
+
+  /// A physical shear rate becomes a capillary number, so that the merged scene states one thing once.
+  void shear_rate() {
+    const std::string said_rate = said("si.shear_rate");
+    const auto refuse = [&](const std::string& why) { fail("si.shear_rate", fmt::format("{} {}", said_rate, why)); };
+    if (p_.flow.kind == FlowKind::rest) refuse("has no meaning with flow.kind = \"rest\": remove it");
+    if (p_.cells.empty()) refuse("has no meaning without cells: remove it or add [[cells]]");
+    for (const char* name : {"flow.capillary_number", "flow.capillary_number_G"}) {
+      if (has(name)) refuse(fmt::format("contradicts {}: give one of both", said(name)));
+    }
+    if (has("accuracy.shear_modulus") && has("accuracy.shear_rate")) {
+      refuse("contradicts accuracy.shear_modulus and accuracy.shear_rate together, which fix the capillary number already: remove one of the three");
+    }
+    std::string missing;
+    const double ca = capillary_number(p_.si, missing);
+    if (!missing.empty()) refuse(fmt::format("needs {} to give a capillary number", missing));
+    const Range& range = find_key("flow.capillary_number")->range;
+    if (!range.contains(ca)) refuse(fmt::format("gives the capillary number {:.4g}, which must be a number {}", ca, range.text()));
+    p_.flow.capillary_number = ca;
+    p_.si.shear_rate.reset();
   }
 
   void cell(CellSpec& c, const std::string& at) {
@@ -100,6 +123,9 @@ class Checker {
     if (c.axis && std::hypot((*c.axis)[0], (*c.axis)[1], (*c.axis)[2]) < 1e-9) {
       fail(at + "axis", fmt::format("{} has no direction: at least one component must differ from 0", said(at + "axis")));
     }
+    if (std::hypot(c.stretch.direction[0], c.stretch.direction[1], c.stretch.direction[2]) < 1e-9) {
+      fail(at + "stretch.direction", fmt::format("{} has no direction: at least one component must differ from 0", said(at + "stretch.direction")));
+    }
   }
 
   /// Names become names of data sets, so they are unique and plain.
@@ -130,11 +156,23 @@ class Checker {
 
   void duration() {
     const bool rest = p_.flow.kind == FlowKind::rest;
-    if (has("run.steps") && has("run.strain")) fail("run.steps", fmt::format("{} contradicts {}: give one of both", said("run.steps"), said("run.strain")));
+    std::string lengths;
+    for (const char* name : {"run.strain", "run.duration", "run.steps"}) {
+      if (!has(name)) continue;
+      if (!lengths.empty()) fail(name, fmt::format("{} contradicts {}: give one of both", said(name), said(lengths)));
+      lengths = name;
+    }
     if (!rest) return;
-    if (has("run.strain")) fail("run.strain", fmt::format("{} has no meaning with flow.kind = \"rest\": give run.steps instead", said("run.strain")));
-    if (!has("run.steps")) fail("", "run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1");
-    // At rest there is no strain to count in: cadences are steps.
+    if (has("run.strain")) {
+      fail("run.strain", fmt::format("{} has no meaning with flow.kind = \"rest\": give run.steps or run.duration instead", said("run.strain")));
+    }
+    if (lengths.empty()) fail("", "run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1 (or run.duration)");
+    // At rest there is no strain to count in: cadences have the unit of the length.
+    if (p_.run.duration) {
+      if (!has("output.series_every")) p_.output.series_every = *p_.run.duration / 200;
+      if (!has("output.snapshot_every")) p_.output.snapshot_every = *p_.run.duration / 10;
+      return;
+    }
     const auto steps = static_cast<double>(*p_.run.steps);
     if (!has("output.series_every")) p_.output.series_every = std::max(1.0, std::floor(steps / 200));
     if (!has("output.snapshot_every")) p_.output.snapshot_every = std::max(1.0, std::floor(steps / 10));

@@ -55,6 +55,12 @@ const Key table[] = {
      "κ_A of the whole surface; 0: no force"},
     {"cells.*.membrane.volume", CORPUSCLE_FIELD(C.membrane.volume), between(0, 1e8), "", "κ_S / r", "c_s V₀/A in lattice units", "κ_V of the volume; 0: no force"},
 
+    {"cells.*.stretch.force", CORPUSCLE_FIELD(C.stretch.force), between(0, 1e4), "", "κ_S r", "none",
+     "External force on each cell of the type: +F along `direction` on one contact patch, −F on the opposite one"},
+    {"cells.*.stretch.patch_diameter", CORPUSCLE_FIELD(C.stretch.patch_diameter), positive(10), "", "r", "",
+     "Vertices of the reference shape within half of this of the two points where the line through its centroid leaves it are pulled, with equal shares"},
+    {"cells.*.stretch.direction", CORPUSCLE_FIELD(C.stretch.direction), between(-1e6, 1e6), "", "", "", "Of the force, in the laboratory; constant"},
+
     {"contact.enabled", CORPUSCLE_FIELD(P.contact.enabled), any, "", "", "", "Repulsion between vertices of different cells, and vertices and walls"},
     {"contact.strength", CORPUSCLE_FIELD(P.contact.strength), positive(100), "", "κ_S", "", "κ_int in the force κ_int (d⁻² − d₀⁻²), d in lattice units"},
     {"contact.range", CORPUSCLE_FIELD(P.contact.range), between(0.1, 3), "", "lattice units", "", "d₀"},
@@ -83,16 +89,22 @@ const Key table[] = {
      "What measured stability limits refuse (docs/stability.md) is run with a warning instead"},
 
     {"run.strain", CORPUSCLE_FIELD(P.run.strain), positive(1e9), "", "1/γ̇", "", "Length of the run; not with `rest`"},
-    {"run.steps", CORPUSCLE_FIELD(P.run.steps), between(1, many_steps), "", "time steps", "from strain", "Length of the run instead of strain; required for `rest`"},
+    {"run.duration", CORPUSCLE_FIELD(P.run.duration), positive(1e9), "", "η₀ r/κ_S", "from strain", "Length of the run instead of strain or steps: needs cells, and may be used with `rest`"},
+    {"run.steps", CORPUSCLE_FIELD(P.run.steps), between(1, many_steps), "", "time steps", "from strain", "Length of the run instead of strain; `rest` needs this or `duration`"},
     {"run.seed", CORPUSCLE_FIELD(P.run.seed), between(0, 9e18), "", "", "", "Of the packing"},
     {"run.packing", CORPUSCLE_FIELD(P.run.packing), any, "", "", "", "File of a saved packing, relative to the scene; empty: pack"},
     {"run.discard", CORPUSCLE_FIELD(P.run.discard), Range{0, 1, false, true}, "", "of the run", "", "Left out of the means at the start"},
 
-    {"output.series_every", CORPUSCLE_FIELD(P.output.series_every), positive(many_steps), "", "1/γ̇; rest: time steps", "0.05; rest: 200th of the run", "Cadence of the time series"},
-    {"output.snapshot_every", CORPUSCLE_FIELD(P.output.snapshot_every), between(0, many_steps), "", "1/γ̇; rest: time steps", "1; rest: 10th of the run",
+    {"output.series_every", CORPUSCLE_FIELD(P.output.series_every), positive(many_steps), "", "1/γ̇; rest: that of `steps` or `duration`", "0.05; rest: 200th of the run", "Cadence of the time series"},
+    {"output.snapshot_every", CORPUSCLE_FIELD(P.output.snapshot_every), between(0, many_steps), "", "1/γ̇; rest: that of `steps` or `duration`", "1; rest: 10th of the run",
      "Cadence of the snapshots; 0: none"},
     {"output.trajectories", CORPUSCLE_FIELD(P.output.trajectories), any, "", "", "", "Data of each cell at the cadence of the series"},
     {"output.fluid", CORPUSCLE_FIELD(P.output.fluid), any, "", "", "", "Velocity field at the cadence of the snapshots"},
+
+    {"si.radius", CORPUSCLE_FIELD(P.si.radius), between(1e-9, 1e-2), "", "", "none", "Large radius r of a cell (with relative_radius = 1)"},
+    {"si.viscosity", CORPUSCLE_FIELD(P.si.viscosity), between(1e-6, 1e3), "", "", "none", "Viscosity η₀ of the fluid"},
+    {"si.shear_modulus", CORPUSCLE_FIELD(P.si.shear_modulus), between(1e-9, 1e3), "", "", "none", "G_s = κ_S/3, the surface shear modulus (with relative_stiffness = 1)"},
+    {"si.shear_rate", CORPUSCLE_FIELD(P.si.shear_rate), positive(1e9), "", "", "none", "γ̇, instead of a capillary number; the merged scene has the capillary number"},
 };
 #undef CORPUSCLE_FIELD
 
@@ -127,11 +139,13 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "cells.*.aspect_ratio") return only_if(cell.shape == ShapeKind::spheroid, "shape = \"spheroid\"");
   if (key.name == "cells.*.file") return only_if(cell.shape == ShapeKind::file, "shape = \"file\" (or no shape)");
   if (key.name == "cells.*.membrane.area_dilation") return only_if(cell.membrane.law == StrainLawKind::skalak, "law = \"skalak\"");
+  if (key.section() == "cells.*.stretch" && key.leaf() != "force") return only_if(cell.stretch.force.has_value(), "stretch.force");
   if (key.name == "accuracy.magic_parameter") return only_if(problem.accuracy.collision == CollisionKind::trt, "collision = \"trt\"");
   if (key.name == "accuracy.cell_size" && problem.accuracy.cell_size == CellSize::hydrodynamic) {
     if (problem.cells.empty()) return only_if(false, "[[cells]]");
     return only_if(problem.accuracy.shell_thickness != 0.0, "a shell (accuracy.shell_thickness > 0, or none given)");
   }
+  if (key.name == "run.duration" || key.section() == "si") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "run.packing") return only_if(!problem.cells.empty() || problem.run.packing.empty(), "[[cells]]");

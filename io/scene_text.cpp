@@ -8,6 +8,7 @@
 
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
+#include "io/scene_si.hpp"
 
 namespace corpuscle::scene {
 
@@ -103,9 +104,10 @@ std::string_view nearest_key(std::string_view name) {
   const std::string_view leaf = dot == std::string_view::npos ? name : name.substr(dot + 1);
   const std::string_view section = dot == std::string_view::npos ? std::string_view{} : name.substr(0, dot);
   // A leaf in the wrong section costs one edit more, so that flow.radius finds accuracy.radius and box.sise finds box.size. For an unknown
-  // section its own spelling decides between equal leaves.
+  // section its own spelling decides between equal leaves, for a known one the order of the table.
+  const bool known = is_section(section);
   const auto cost = [&](const Key& key) {
-    const int other_section = key.section() == section ? 0 : 10 + edit_distance(section, key.section());
+    const int other_section = key.section() == section ? 0 : 10 + (known ? 0 : edit_distance(section, key.section()));
     return 10 * edit_distance(leaf, key.leaf()) + other_section;
   };
   return std::min_element(keys().begin(), keys().end(), [&](const Key& a, const Key& b) { return cost(a) < cost(b); })->name;
@@ -120,7 +122,7 @@ void write_section(std::string& out, std::string_view section, const Problem& pr
   for (const Key& key : keys()) {
     std::string reason;
     if (key.section() != section || !applies(key, problem, cell, reason)) continue;
-    if (key.name == "run.strain" && (problem.run.steps || problem.flow.kind == FlowKind::rest)) continue;
+    if (key.name == "run.strain" && (problem.run.steps || problem.run.duration || problem.flow.kind == FlowKind::rest)) continue;
     const std::string value = value_text(key, key.field(p, c));
     if (value.empty()) out += fmt::format("# {} not set: {}\n", key.leaf(), key.default_note);
     else out += fmt::format("{} = {}\n", key.leaf(), value);
@@ -144,6 +146,10 @@ std::string to_toml(const Problem& problem) {
   using scene::write_section;
   std::string out;
   const CellSpec none;
+  if (problem.si.radius || problem.si.viscosity || problem.si.shear_modulus) {
+    out += "[si]\n";
+    write_section(out, "si", problem, none);
+  }
   for (const char* section : {"box", "flow"}) {
     out += fmt::format("[{}]\n", section);
     write_section(out, section, problem, none);
@@ -153,6 +159,9 @@ std::string to_toml(const Problem& problem) {
     write_section(out, "cells.*", problem, cell);
     out += "[cells.membrane]\n";
     write_section(out, "cells.*.membrane", problem, cell);
+    if (!cell.stretch.force) continue;
+    out += "[cells.stretch]\n";
+    write_section(out, "cells.*.stretch", problem, cell);
   }
   for (const char* section : {"contact", "accuracy", "run", "output"}) {
     out += fmt::format("[{}]\n", section);
@@ -170,12 +179,14 @@ std::string scene_key_reference() {
   for (const scene::Key& key : scene::keys()) {
     if (key.section() != section) {
       section = key.section();
-      const std::string title = section == "cells.*" ? "[[cells]]" : section == "cells.*.membrane" ? "[[cells]] membrane" : fmt::format("[{}]", section);
+      const std::string title = section == "cells.*" ? "[[cells]]" : section.starts_with("cells.*.") ? fmt::format("[[cells]] {}", section.substr(8)) : fmt::format("[{}]", section);
       out += fmt::format("{}### {}\n\n| key | type | default | allowed | unit | meaning |\n|---|---|---|---|---|---|\n", out.empty() ? "" : "\n", title);
     }
     std::string default_text(key.default_note);
     if (default_text.empty()) default_text = fmt::format("`{}`", scene::value_text(key, key.field(problem, cell)));
-    out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.leaf(), scene::type_name(key), default_text, scene::allowed_text(key), key.unit, key.meaning);
+    std::string unit(key.unit);
+    if (const scene::SiKey* si = scene::find_si_key(key.name)) unit += fmt::format("{}{}", unit.empty() ? "" : ", or SI: ", si->unit);
+    out += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.leaf(), scene::type_name(key), default_text, scene::allowed_text(key), unit, key.meaning);
   }
   return out;
 }

@@ -17,8 +17,8 @@ namespace {
 /// Keys of which a scene gives at most one: an override of one removes the others that come from the file.
 const std::vector<std::vector<std::string_view>> alternatives = {
     {"cells.*.count", "cells.*.volume_fraction", "cells.*.effective_volume_fraction"},
-    {"flow.capillary_number", "flow.capillary_number_G"},
-    {"run.strain", "run.steps"},
+    {"flow.capillary_number", "flow.capillary_number_G", "si.shear_rate"},
+    {"run.strain", "run.steps", "run.duration"},
     {"cells.*.shape", "cells.*.file"},
 };
 /// What an override of the preset takes over from the file: without this `--set accuracy.preset=draft` had no effect on a merged scene.
@@ -123,7 +123,7 @@ void apply_override(Document& document, const std::string& text) {
     throw InputError(fmt::format("--set: {} isn't of the form key=value, for instance flow.capillary_number=0.05", quote(one_line(text))));
   }
   const std::string pattern = pattern_of(path);
-  if (find_key(pattern) == nullptr && !(is_section(pattern) && pattern == "cells.*.membrane")) {
+  if (find_key(pattern) == nullptr && !(is_section(pattern) && pattern.starts_with("cells.*."))) {
     throw InputError(fmt::format("--set: {} isn't a key of a scene; the nearest known key is {}", one_line(path), nearest_key(pattern)));
   }
   const std::vector<std::string> parts = split(path);
@@ -137,18 +137,20 @@ void apply_override(Document& document, const std::string& text) {
 void drop_replaced(Document& document) {
   for (const std::string& path : document.overridden) {
     const std::string pattern = pattern_of(path);
-    toml::table& table = parent_table(document, path, split(path));
-    const std::string prefix = path.substr(0, path.rfind('.') + 1);
-    const auto drop = [&](std::string_view leaf) {
-      if (!document.overridden.contains(prefix + std::string(leaf))) table.erase(leaf);
+    const std::string section = path.substr(0, path.rfind('.') + 1);  // "cells.0." with its dot
+    const auto drop = [&](const std::string& other) {
+      const std::vector<std::string> parts = split(other);
+      if (document.overridden.contains(other) || (parts.size() == 2 && !document.root.contains(parts[0]))) return;
+      parent_table(document, other, parts).erase(parts.back());
     };
     for (const auto& group : alternatives) {
       if (std::find(group.begin(), group.end(), pattern) == group.end()) continue;
       for (const std::string_view other : group) {
-        if (other != pattern) drop(other.substr(other.rfind('.') + 1));
+        if (other != pattern) drop(other.starts_with("cells.") ? section + std::string(other.substr(other.rfind('.') + 1)) : std::string(other));
       }
     }
-    if (pattern == "accuracy.preset") std::for_each(preset_knobs.begin(), preset_knobs.end(), drop);
+    if (pattern != "accuracy.preset") continue;
+    for (const std::string_view knob : preset_knobs) drop(section + std::string(knob));
   }
 }
 

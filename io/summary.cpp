@@ -21,6 +21,7 @@ SeriesSummary::SeriesSummary(const LatticeParameters& lattice, double discard) :
   scene_.phi_geometric = lattice.phi_geometric;
   scene_.phi_nominal = lattice.phi_nominal;
   scene_.phi_effective = lattice.phi_effective;
+  scene_.si = lattice.si;
   for (const auto& type : lattice.cells) {
     scene_.cell_count += type.count;
     scene_.effective_radius.emplace_back(type.name, type.effective_radius);
@@ -151,6 +152,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["intrinsic_viscosity_error"] = summary.intrinsic_viscosity_error;
     json["area_ratio"] = summary.area_ratio;
   }
+  if (summary.si.length) json["unit_length_m"] = *summary.si.length;
+  if (summary.si.force) json["unit_force_N"] = *summary.si.force;
+  if (summary.si.time) json["unit_time_s"] = *summary.si.time;
   json["wall_seconds"] = summary.wall_seconds;
   json["mlups"] = summary.mlups;
   json["threads"] = summary.threads;

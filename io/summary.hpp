@@ -24,6 +24,7 @@ struct Summary {
   double phi_effective = none;
   std::vector<std::pair<std::string, double>> effective_radius;  ///< hydrodynamic radius of each cell type, lattice units
   std::int64_t cell_count = 0;
+  SiUnits si;              ///< one lattice unit in SI units, where the scene's [si] fixes it
   std::int64_t steps = 0;  ///< reached
   double strain = 0;       ///< reached
 

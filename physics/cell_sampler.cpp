@@ -5,8 +5,8 @@
 namespace corpuscle {
 namespace {
 
-using CellValues = Kokkos::View<double* [23], Kokkos::LayoutRight, MemSpace>;
-constexpr int centre = 0, velocity = 3, gyration = 6, stresslet = 12, volume = 21, area = 22;
+using CellValues = Kokkos::View<double* [26], Kokkos::LayoutRight, MemSpace>;
+constexpr int centre = 0, velocity = 3, gyration = 6, stresslet = 12, volume = 21, area = 22, extent = 23;
 
 /// One thread a cell: sampling is rare, and the sums have the same bits for any number of threads.
 struct MembraneStress {
@@ -61,9 +61,14 @@ struct Shape {
   }
   KOKKOS_FUNCTION void operator()(const int i) const {
     const int base = first_vertex + i * vertices, cell = first_cell + i;
-    double mean_velocity[3] = {};
+    double mean_velocity[3] = {}, low[3], high[3];
+    for (int k = 0; k < 3; ++k) low[k] = high[k] = x(base, k);
     for (int v = base; v < base + vertices; ++v)
-      for (int k = 0; k < 3; ++k) mean_velocity[k] += u(v, k) / vertices;
+      for (int k = 0; k < 3; ++k) {
+        mean_velocity[k] += u(v, k) / vertices;
+        low[k] = x(v, k) < low[k] ? x(v, k) : low[k];
+        high[k] = x(v, k) > high[k] ? x(v, k) : high[k];
+      }
     const Vec3<double> first{x(base, 0), x(base, 1), x(base, 2)};
     double v_sum = 0, a_sum = 0;
     Vec3<double> moment{0, 0, 0};
@@ -88,6 +93,7 @@ struct Shape {
     for (int k = 0; k < 3; ++k) {
       out(cell, centre + k) = x(base, k) + m[k];
       out(cell, velocity + k) = mean_velocity[k];
+      out(cell, extent + k) = high[k] - low[k];
     }
     for (int k = 0; k < 6; ++k) out(cell, gyration + k) = second[k] / v_sum - outer[k];
     out(cell, volume) = v_sum;
@@ -127,7 +133,7 @@ std::vector<CellSample> CellSampler::collect() const {
   std::vector<CellSample> samples(host.extent(0));
   for (std::size_t c = 0; c < samples.size(); ++c) {
     auto& s = samples[c];
-    for (int k = 0; k < 3; ++k) s.centre[k] = host(c, centre + k), s.velocity[k] = host(c, velocity + k);
+    for (int k = 0; k < 3; ++k) s.centre[k] = host(c, centre + k), s.velocity[k] = host(c, velocity + k), s.extent[k] = host(c, extent + k);
     for (int k = 0; k < 6; ++k) s.gyration[k] = host(c, gyration + k);
     for (int k = 0; k < 9; ++k) s.stresslet[k] = host(c, stresslet + k);
     s.volume = host(c, volume);

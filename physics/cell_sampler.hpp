@@ -17,7 +17,7 @@ class CellSampler {
   void measure_membrane_stress(const Cells& cells);
   /// Adds half of each pair repulsion, - 1/2 F_a d_b with the nearest-image vector d, and the normal force of the walls.
   void measure_contact_stress(const Cells& cells, const Contact& contact);
-  /// Centre, velocity, gyration, volume, area at the present positions and velocities.
+  /// Centre, velocity, gyration, volume, area, extent at the present positions and velocities.
   void measure_shape(const Cells& cells);
   /// Result on the host, ordered by type, then number.
   std::vector<CellSample> collect() const;
@@ -25,7 +25,7 @@ class CellSampler {
  private:
   PeriodicBox box_;
   std::vector<FaceTable> faces_;  // by type
-  Kokkos::View<double* [23], Kokkos::LayoutRight, MemSpace> values_;          // centre 3, velocity 3, gyration 6, stresslet 9, volume, area
+  Kokkos::View<double* [26], Kokkos::LayoutRight, MemSpace> values_;          // centre 3, velocity 3, gyration 6, stresslet 9, volume, area, extent 3
 };
 
 }  // namespace corpuscle

@@ -19,6 +19,15 @@ enum class VertexUpdate { averaged, euler };
 enum class CellSize { mesh, hydrodynamic };
 enum class Precision { single_precision, double_precision };
 
+/// [si] What the dimensionless scene stands for. Values that a scene gives with units ("67.7 pN") are converted with these when it is read; nothing else
+/// depends on them, and outputs state the units that follow (physics/si_units.hpp).
+struct SiSpec {
+  std::optional<double> radius;         ///< r in m
+  std::optional<double> viscosity;      ///< eta_0 in Pa s
+  std::optional<double> shear_modulus;  ///< G_s = kappa_S / 3 in N/m, of cell types with relative_stiffness 1
+  std::optional<double> shear_rate;     ///< in 1/s; reading turns it into flow.capillary_number
+};
+
 /// [box] Lengths in cell radii; z is the gradient direction and is bounded by walls when `walls` is true, x is the flow direction.
 struct BoxSpec {
   std::array<double, 3> size{20, 20, 40};
@@ -43,6 +52,13 @@ struct MembraneSpec {
   std::optional<double> volume;              ///< kappa_V r / kappa_S; absent: c_s V_0/A in lattice units; 0: no volume force
 };
 
+/// [[cells]].stretch: two opposite external forces on two contact patches (physics/stretching.hpp).
+struct StretchSpec {
+  std::optional<double> force;               ///< F / (kappa_S r) of the type: +F on one patch, -F on the other; absent: none
+  double patch_diameter = 0.5;               ///< in radii of the type
+  std::array<double, 3> direction{1, 0, 0};  ///< of +F, in the laboratory; the patches lie where it leaves the cell as placed by `axis`
+};
+
 /// [[cells]] one cell type.
 struct CellSpec {
   std::string name;                          ///< used in outputs; default: shape name, numbered when not unique
@@ -57,6 +73,7 @@ struct CellSpec {
   std::optional<std::array<double, 3>> position;    ///< of the only cell of the type, in cell radii; else packed
   std::optional<std::array<double, 3>> axis;        ///< symmetry axis of the only cell (reference: z); with `position`
   MembraneSpec membrane;
+  StretchSpec stretch;
 };
 
 /// [contact] short-range repulsion between vertices of different cells, and vertices and walls.
@@ -89,13 +106,14 @@ struct AccuracySpec {
 /// [run]
 struct RunSpec {
   double strain = 10;                        ///< length of the run in units of 1/shear_rate (rest: ignored)
-  std::optional<std::int64_t> steps;         ///< length in time steps instead (needed for flow.kind = "rest")
+  std::optional<std::int64_t> steps;         ///< length in time steps instead
+  std::optional<double> duration;            ///< length in units of eta_0 r / kappa_S instead; rest: one of both is needed
   std::uint64_t seed = 1;
   std::string packing;                       ///< file of a saved packing to start from; empty: pack
   double discard = 0.25;                     ///< fraction of the run left out of the means
 };
 
-/// [output] cadences in strain units (rest: in steps).
+/// [output] cadences in strain units (rest: in the unit of the length of the run, steps or eta_0 r / kappa_S).
 struct OutputSpec {
   double series_every = 0.05;
   double snapshot_every = 1.0;               ///< 0: none
@@ -105,6 +123,7 @@ struct OutputSpec {
 
 /// A complete scene.
 struct Problem {
+  SiSpec si;
   BoxSpec box;
   FlowSpec flow;
   std::vector<CellSpec> cells;

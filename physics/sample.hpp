@@ -14,6 +14,7 @@ struct CellSample {
   std::array<double, 9> stresslet{};  ///< - sum_v F_a r_b (membrane and half of each pair repulsion), row a, column b; lattice energy units
   double volume = 0;
   double area = 0;
+  std::array<double, 3> extent{};     ///< largest distance between two vertices along x, y and z
 };
 
 /// The whole suspension at one instant.

@@ -8,6 +8,7 @@
 #include "physics/contact.hpp"
 #include "physics/coupling.hpp"
 #include "physics/membrane.hpp"
+#include "physics/stretching.hpp"
 #include "physics/suspension_sample.hpp"
 
 namespace corpuscle {
@@ -43,6 +44,7 @@ class SuspensionOf final : public Suspension {
       membranes_.push_back(make_membrane(type.reference, type.moduli, problem.accuracy.membrane_precision, type.first_vertex, type.count));
     if (problem.contact.enabled)
       contact_ = std::make_unique<Contact>(box, ContactParameters{lattice.contact_strength, lattice.contact_range}, cells_->cell_of_vertex());
+    if (Stretching::needed(problem)) stretching_ = std::make_unique<Stretching>(problem, lattice, cells_->types());
   }
 
   void step() override { step_with(nullptr); }
@@ -74,6 +76,7 @@ class SuspensionOf final : public Suspension {
     if (cells_) total += cells_->bytes() + coupling_->bytes();
     for (const auto& m : membranes_) total += m->bytes();
     if (contact_) total += contact_->bytes();
+    if (stretching_) total += stretching_->bytes();
     return total;
   }
 
@@ -85,6 +88,7 @@ class SuspensionOf final : public Suspension {
       if (sample) sampler_->measure_membrane_stress(*cells_);
       if (contact_) contact_->add_forces(cells_->positions(), cells_->forces());
       if (sample && contact_) sampler_->measure_contact_stress(*cells_, *contact_);
+      if (stretching_) stretching_->add_forces(cells_->forces());  // external: no part of the particle stress
       coupling_->spread(cells_->positions(), cells_->forces(), fluid_.force());
       if (sample && problem_.box.walls) spread_on_walls_ = fluid_.wall_force_from_spreading();
       fluid_.scatter_force();
@@ -135,6 +139,7 @@ class SuspensionOf final : public Suspension {
   std::unique_ptr<CellSampler> sampler_;
   std::vector<std::unique_ptr<Membrane>> membranes_;
   std::unique_ptr<Contact> contact_;
+  std::unique_ptr<Stretching> stretching_;
   std::array<double, 2> spread_on_walls_{};
 };
 

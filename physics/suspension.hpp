@@ -15,7 +15,7 @@ class Suspension {
  public:
   virtual ~Suspension() = default;
 
-  /// One time step (docs/theory/model.md): F = -dE/dx + contact; f = spread F; collide and stream; u = interpolate; x += u.
+  /// One time step (docs/theory/model.md): F = -dE/dx + contact + external; f = spread F; collide and stream; u = interpolate; x += u.
   virtual void step() = 0;
   /// One time step, and what was measured at its beginning.
   virtual Sample step_and_measure() = 0;

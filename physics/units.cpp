@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "physics/contact_patches.hpp"
 #include "physics/hydrodynamic_size.hpp"
 #include "physics/mesh.hpp"
 #include "physics/stability_limits.hpp"
@@ -98,6 +99,19 @@ void check_walls(const Problem& problem, std::size_t type, const Mesh& mesh) {
   }
 }
 
+/// Refuses contact patches that the mesh can't have.
+void check_stretch(const Problem& problem, std::size_t type, const Mesh& mesh, double radius) {
+  const CellSpec& spec = problem.cells[type];
+  if (!spec.stretch.force) return;
+  const double diameter = spec.stretch.patch_diameter;
+  const ContactPatches patches = contact_patches(mesh, direction_in_reference(spec), diameter * radius);
+  const auto refuse = [&](const char* what, const std::string& allowed) {
+    throw InputError(fmt::format("cells.{}.stretch.patch_diameter = {} {}: it must be {}", type, diameter, what, allowed));
+  };
+  if (patches.ahead.empty() || patches.behind.empty()) refuse("is too small for the mesh, no vertex lies in the patch", ">= " + at_least(patches.smallest_diameter / radius));
+  if (diameter * radius > patches.largest_diameter * (1 - tolerance)) refuse("makes both patches overlap", "< " + at_most(patches.largest_diameter / radius));
+}
+
 /// Number of cells from the fraction that the scene gives.
 std::int64_t count_of(const CellSpec& spec, std::size_t type, const CellTypeLattice& cell, double box) {
   if (spec.count) return *spec.count;
@@ -127,6 +141,7 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     const int subdivision = std::max(2, static_cast<int>(std::lround(frequency)));
     const Mesh mesh = mesh_of(spec, problem.accuracy, i, cell.radius, subdivision);
     check_walls(problem, i, mesh);
+    check_stretch(problem, i, mesh, cell.radius);
     cell.subdivision = spec.shape == ShapeKind::file ? 0 : subdivision;
     cell.vertices = static_cast<std::int64_t>(mesh.vertices.size());
     cell.faces = static_cast<std::int64_t>(mesh.faces.size());
@@ -344,6 +359,7 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
     m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, response)) : 0;
     m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, response);
+    cell.stretching_force = problem.cells[i].stretch.force.value_or(0) * m.shear * cell.radius;
   }
   if (problem.contact.enabled && kappa > 0) {
     lattice.contact_strength = problem.contact.strength * kappa;
@@ -365,16 +381,18 @@ void set_flow(const Problem& problem, LatticeParameters& lattice) {
 
 void set_duration(const Problem& problem, LatticeParameters& lattice) {
   const bool rest = problem.flow.kind == FlowKind::rest;
-  if (rest && !problem.run.steps) throw InputError("run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1");
+  const auto& duration = problem.run.duration;
+  if (rest && !problem.run.steps && !duration) throw InputError("run.steps is missing: flow.kind = \"rest\" needs the length of the run in time steps, a whole number >= 1 (or run.duration)");
   lattice.steps_per_strain = rest ? 0 : 1 / lattice.shear_rate;
-  const double unit = rest ? 1 : lattice.steps_per_strain;
-  const auto steps = [&](const char* key, double value) {
-    if (value * unit > 1e15) throw InputError(fmt::format("{} = {} is {:.3g} time steps, more than can be counted (1e15): lower it or raise the shear rate", key, value, value * unit));
-    return std::max<std::int64_t>(1, std::llround(value * unit));
+  const double unit = !rest ? lattice.steps_per_strain : duration ? lattice.membrane_time : 1;
+  const auto steps = [](const char* key, double value, double steps_per_unit) {
+    const double n = value * steps_per_unit;
+    if (n > 1e15) throw InputError(fmt::format("{} = {} is {:.3g} time steps, more than can be counted (1e15): lower it or raise the shear rate", key, value, n));
+    return std::max<std::int64_t>(1, std::llround(n));
   };
-  lattice.steps = problem.run.steps ? *problem.run.steps : steps("run.strain", problem.run.strain);
-  lattice.series_every = steps("output.series_every", problem.output.series_every);
-  lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every) : 0;
+  lattice.steps = problem.run.steps ? *problem.run.steps : duration ? steps("run.duration", *duration, lattice.membrane_time) : steps("run.strain", problem.run.strain, unit);
+  lattice.series_every = steps("output.series_every", problem.output.series_every, unit);
+  lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every, unit) : 0;
 }
 
 }  // namespace
@@ -386,6 +404,8 @@ LatticeParameters to_lattice(const Problem& problem) {
   set_cells(problem, lattice);
   const double kappa = ShearRateChoice(problem, lattice).choose();
   set_moduli(problem, kappa, lattice);
+  if (kappa > 0) lattice.membrane_time = lattice.viscosity * lattice.radius / kappa;
+  lattice.si = si_units(problem.si, lattice.radius, kappa, lattice.viscosity);
   set_flow(problem, lattice);
   set_stability_margins(problem, lattice);
   set_duration(problem, lattice);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/problem.hpp"
+#include "physics/si_units.hpp"
 
 namespace corpuscle {
 
@@ -51,6 +52,7 @@ struct CellTypeLattice {
   double effective_volume = 0;  ///< with the shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
   std::int64_t count = 0;
   MembraneModuli moduli;
+  double stretching_force = 0;  ///< on each of the two contact patches
 };
 
 /// Everything the solver needs, in lattice units (dx = dt = rho_0 = 1).
@@ -72,6 +74,8 @@ struct LatticeParameters {
   double phi_effective = 0;            ///< with the shell
   double contact_strength = 0;         ///< kappa_int
   double contact_range = 0;            ///< d_0
+  double membrane_time = 0;            ///< eta_0 r / kappa_S in time steps; 0 without cells
+  SiUnits si;                          ///< one lattice unit in SI units
   std::int64_t steps = 0;              ///< of the whole run
   double steps_per_strain = 0;         ///< 0 at rest
   std::int64_t series_every = 0;       ///< steps

@@ -29,6 +29,8 @@ LatticeParameters small_lattice() {
   lattice.cells[0].moduli.shear = 0.1;
   lattice.cells[1].name = "bead";
   lattice.cells[1].count = 1;
+  lattice.cells[1].stretching_force = 0.2;
+  lattice.si.length = 1e-6;  // without viscosity and modulus: only this is known
   return lattice;
 }
 
@@ -70,6 +72,9 @@ TEST_CASE("RunFile: metadata and lattice parameters are stored", "[io]") {
   CHECK(file.number_attribute("/lattice", "viscosity") == 1.0 / 6);
   CHECK(file.number_attribute("/lattice/cell_types/0", "shear_modulus") == 0.1);
   CHECK(file.string_attribute("/lattice/cell_types/1", "name") == "bead");
+  CHECK(file.number_attribute("/lattice/cell_types/1", "stretching_force") == 0.2);
+  CHECK(file.number_attribute("/lattice", "unit_length_m") == 1e-6);
+  CHECK_THROWS(file.number_attribute("/lattice", "unit_time_s"));
   CHECK(file.string_attribute("/lattice/limits/0", "name") == "membrane stability");
   CHECK(file.read<std::int32_t>("/cells/type").values == std::vector<std::int32_t>{0, 0, 1});
   CHECK(file.read_strings("/cells/type_names") == std::vector<std::string>{"red_cell", "bead"});

@@ -131,6 +131,15 @@ TEST_CASE("summary.json: keys, null for missing numbers, whole or not at all", "
   CHECK(json["stopped_by"] == "interrupt");
   CHECK(json["converged"] == true);
   CHECK_FALSE(json.contains("deformation"));
+  CHECK_FALSE(json.contains("unit_length_m"));
+
+  auto lattice = lattice_of(8);
+  lattice.si = {5e-7, 2e-10, 4e-6};
+  write_summary(folder / "summary.json", summarise(stepped_series(), lattice, 0.25));
+  const auto in_si = read_json(folder / "summary.json");
+  CHECK(in_si["unit_length_m"] == 5e-7);
+  CHECK(in_si["unit_force_N"] == 2e-10);
+  CHECK(in_si["unit_time_s"] == 4e-6);
 
   auto single = summary;
   single.cell_count = 1;

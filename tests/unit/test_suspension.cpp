@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "io/scene.hpp"
+#include "physics/contact_patches.hpp"
 #include "physics/packing.hpp"
 #include "tests/catch.hpp"
 
@@ -64,6 +65,39 @@ TEST_CASE("A scene launches only the kernels that it needs", "[suspension]") {
   const auto without = kernels_of(one_cell + "[contact]\nenabled = false\n");
   for (const auto& name : without) CHECK(name.find("contact") == std::string::npos);
   for (const char* needed : {"membrane_forces", "spread", "scatter_force", "collide_stream", "gather_velocity", "interpolate", "advance"}) CHECK(without.count(needed) == 1);
+}
+
+TEST_CASE("Stretching forces cost a kernel and memory only where a scene has them", "[suspension]") {
+  const std::string one_cell = "[box]\nsize = [4, 4, 4]\n[flow]\ncapillary_number = 0.1\n[accuracy]\nradius = 4\n[run]\nstrain = 1\n[[cells]]\ncount = 1\n";
+  const std::string stretched = one_cell + "stretch = { force = 0.1, patch_diameter = 0.8 }\n";
+  const auto without = kernels_of(one_cell), none = kernels_of(one_cell + "stretch = { force = 0 }\n");
+  auto with = kernels_of(stretched);
+  CHECK(with.erase("stretching_forces") == 1);
+  CHECK(with == without);
+  CHECK(none == without);
+  CHECK(start(one_cell).suspension->bytes() == start(one_cell + "stretch = { force = 0 }\n").suspension->bytes());
+  CHECK(start(one_cell).suspension->bytes() < start(stretched).suspension->bytes());
+}
+
+TEST_CASE("A stretched cell in a periodic fluid at rest grows along the force, gains no momentum, and its stress leaves the external force out", "[suspension]") {
+  const auto r = start("[box]\nsize = [4, 4, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 4\nprecision = 'double'\nshear_modulus = 0.02\n[run]\nsteps = 4000\n[[cells]]\nshape = 'sphere'\n"
+                       "count = 1\nstretch = { force = 0.5, patch_diameter = 0.8 }\n");
+  Sample sample;
+  for (int i = 0; i < 4000; ++i) sample = r.suspension->step_and_measure();
+  const auto& cell = sample.cells[0];
+  CHECK(cell.extent[0] > 8.5);
+  CHECK(cell.extent[1] < 7.9);
+  CHECK(cell.extent[1] == Approx(cell.extent[2]).epsilon(0.01));  // the icosahedron is not isotropic about x
+  for (const double component : r.suspension->fluid_momentum()) CHECK(std::abs(component) < 1e-12);
+  // In equilibrium membrane and external forces balance up to a pressure, whose first moment is isotropic: the membrane's is that of the external force, F times the distance
+  // of the patches' means. It relaxes with a few times eta r/G_s = 100 steps: a few per mille are left.
+  const CellType type = make_cell_types(r.problem, r.lattice)[0];
+  const ContactPatches patches = contact_patches(type.reference, {1, 0, 0}, 0.8 * 4);
+  const auto x = r.suspension->snapshot(false).positions;
+  double distance = 0;
+  for (const int v : patches.ahead) distance += x[3 * v] / double(patches.ahead.size());
+  for (const int v : patches.behind) distance -= x[3 * v] / double(patches.behind.size());
+  CHECK(cell.stresslet[0] - 0.5 * (cell.stresslet[4] + cell.stresslet[8]) == Approx(0.5 * 0.02 * 4 * distance).epsilon(0.01));
 }
 
 TEST_CASE("A scene allocates only what it needs, and as much as predicted", "[suspension]") {
