@@ -13,8 +13,8 @@ enum class FlowKind { shear, poiseuille, rest };
 enum class ShapeKind { red_cell, sphere, spheroid, file };
 enum class StrainLawKind { skalak, neo_hookean };
 enum class CollisionKind { bgk, trt };
-/// How vertices move with the interpolated velocity (physics/cells.hpp).
-enum class VertexUpdate { averaged, euler };
+/// How vertices move with the interpolated velocity (physics/vertex_motion.hpp).
+enum class VertexUpdate { averaged, chebyshev, euler };
 enum class Precision { single_precision, double_precision };
 
 /// [box] Lengths in cell radii; z is the gradient direction and is bounded by walls when `walls` is true, x is the flow direction.

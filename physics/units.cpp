@@ -32,7 +32,7 @@ struct StiffnessLimits {
   double shear, dilation;
 };
 StiffnessLimits stiffness_limits(const AccuracySpec& accuracy) {
-  if (accuracy.vertex_update == VertexUpdate::averaged) return {1.2, 6};
+    if (accuracy.vertex_update == VertexUpdate::averaged) return {1.2, 6};
   switch (accuracy.delta_kernel) {
     case 2: return {0.1, 0.1};
     case 3: return {0.6, 0.6};
@@ -238,6 +238,7 @@ class ShearRateChoice {
   /// Largest kappa_S of the scene for which the volume force that type i asks for is stable.
   double largest_modulus_by_volume(std::size_t i) const {
     const CellTypeLattice& cell = l_.cells[i];
+    if (p_.accuracy.vertex_update == VertexUpdate::chebyshev) return std::numeric_limits<double>::infinity();
     return volume_modulus(cell, stable_volume) * cell.radius / (*p_.cells[i].membrane.volume * p_.cells[i].relative_stiffness);
   }
 
@@ -301,10 +302,12 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     m.area_dilation = spec.law == StrainLawKind::skalak ? spec.area_dilation * m.shear : 0;
     m.bending = spec.bending * m.shear * cell.radius * cell.radius;
     m.bending_constant = spec.bending_constant;
+    // The chebyshev update has no limit on these moduli: they follow kappa_S as in the paper's stiffest runs.
+    const double followed = problem.accuracy.vertex_update == VertexUpdate::chebyshev ? 5 : 0;
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
-    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? penalty * lattice.viscosity : 0;
-    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, default_volume);
+    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::max(penalty * lattice.viscosity, followed * m.shear) : 0;
+    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : std::max(volume_modulus(cell, default_volume), followed * m.shear);
   }
   if (problem.contact.enabled && kappa > 0) {
     lattice.contact_strength = problem.contact.strength * kappa;
