@@ -226,6 +226,7 @@ int run(const RunOptions& options) {
   }
   Outputs& outputs = *created;
   packing.positions = {};
+  if (packs_cells(problem, types)) suspension->settle();
   SeriesSummary series(lattice, problem.run.discard);
   const RunEnd end = simulate(lattice, *suspension, outputs, series, terminal);
 

@@ -40,27 +40,6 @@ Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) 
   Kokkos::deep_copy(cell_of_vertex_, cell_of);
 }
 
-void Cells::advance(VertexUpdate update) {
-  const auto x = positions_, u = velocities_;
-  if (update == VertexUpdate::euler) {
-    Kokkos::parallel_for("advance", Kokkos::RangePolicy<ExecSpace>(0, vertex_count_), KOKKOS_LAMBDA(const int v) {
-      for (int k = 0; k < 3; ++k) x(v, k) += u(v, k);
-    });
-    return;
-  }
-  if (previous_velocities_.extent(0) == 0) {
-    previous_velocities_ = VertexVectors("previous_velocities", vertex_count_);
-    Kokkos::deep_copy(previous_velocities_, velocities_);
-  }
-  const auto before = previous_velocities_;
-  Kokkos::parallel_for("advance", Kokkos::RangePolicy<ExecSpace>(0, vertex_count_), KOKKOS_LAMBDA(const int v) {
-    for (int k = 0; k < 3; ++k) {
-      x(v, k) += 0.5 * (u(v, k) + before(v, k));
-      before(v, k) = u(v, k);
-    }
-  });
-}
-
 std::vector<double> Cells::to_host(const VertexVectors& vectors) {
   std::vector<double> host(vectors.extent(0) * 3);
   Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)), vectors);

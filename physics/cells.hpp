@@ -39,21 +39,15 @@ class Cells {
   VertexVectors forces() const { return forces_; }
   Array1<int> cell_of_vertex() const { return cell_of_vertex_; }
 
-  /// Moves the vertices by one step.
-  /// - euler: x(t+1) = x(t) + u(t).
-  /// - averaged: x(t+1) = x(t) + (u(t) + u(t-1))/2. The lattice has staggered momenta that flip sign at every step and that no collision damps
-  ///   (Zanetti, Phys. Rev. A 40, 1539 (1989)). The 2- and 3-point kernels see them, and an elastic membrane that follows them feeds them: dense suspensions
-  ///   become unstable at moduli far below the limit of the 4-point kernel. The mean of two steps is blind to them; the error is half a step of delay.
-  void advance(VertexUpdate update);
   std::vector<double> positions_host() const { return to_host(positions_); }
   std::vector<double> velocities_host() const { return to_host(velocities_); }
-  std::size_t bytes() const { return (3 * positions_.span() + previous_velocities_.span()) * sizeof(double) + cell_of_vertex_.span() * sizeof(int); }
+  std::size_t bytes() const { return 3 * positions_.span() * sizeof(double) + cell_of_vertex_.span() * sizeof(int); }
 
  private:
   static std::vector<double> to_host(const VertexVectors& vectors);
   std::vector<CellType> types_;
   int cell_count_ = 0, vertex_count_ = 0;
-  VertexVectors positions_, velocities_, previous_velocities_, forces_;
+  VertexVectors positions_, velocities_, forces_;
   Array1<int> cell_of_vertex_;
 };
 

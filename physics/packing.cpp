@@ -234,12 +234,9 @@ class Packer {
 
 std::vector<double> place_cells(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const PackingProgress& progress) {
   if (types.empty()) return {};
-  int total = 0, placed = 0;
-  for (std::size_t t = 0; t < types.size(); ++t) {
-    total += types[t].count;
-    placed += problem.cells[t].position ? 1 : 0;
-  }
-  const bool explicitly = placed == int(types.size()) || total == 1;
+  std::size_t placed = 0;
+  for (const auto& cell : problem.cells) placed += cell.position ? 1 : 0;
+  const bool explicitly = !packs_cells(problem, types);
   if (!explicitly && placed > 0)
     throw InputError("cells.position is given for some cell types only; give it for all of them, or for none so that all are packed at random.");
   auto positions = explicitly ? place_explicitly(problem, lattice, types) : Packer(problem, lattice, types).run(progress);
@@ -251,6 +248,14 @@ std::vector<double> place_cells(const Problem& problem, const LatticeParameters&
     does_not_fit(lattice, what);
   }
   return positions;
+}
+
+bool packs_cells(const Problem& problem, const std::vector<CellType>& types) {
+  int total = 0;
+  bool everywhere = true;
+  for (const auto& type : types) total += type.count;
+  for (const auto& cell : problem.cells) everywhere = everywhere && cell.position.has_value();
+  return total > 1 && !everywhere;
 }
 
 }  // namespace corpuscle

@@ -17,4 +17,7 @@ using PackingProgress = std::function<bool(double scale, double gap, int rounds)
 std::vector<double> place_cells(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types,
                                 const PackingProgress& progress = {});
 
+/// Whether `place_cells` packs: more than one cell, and none has a position in the scene. The suspension should settle such a start.
+bool packs_cells(const Problem& problem, const std::vector<CellType>& types);
+
 }  // namespace corpuscle

@@ -13,8 +13,8 @@ enum class FlowKind { shear, poiseuille, rest };
 enum class ShapeKind { red_cell, sphere, spheroid, file };
 enum class StrainLawKind { skalak, neo_hookean };
 enum class CollisionKind { bgk, trt };
-/// How vertices move with the interpolated velocity (physics/cells.hpp).
-enum class VertexUpdate { averaged, euler };
+/// How vertices move with the interpolated velocity (physics/vertex_motion.hpp).
+enum class VertexUpdate { averaged, chebyshev, euler };
 /// Which surface has the nominal radius: the mesh, or the one a hydrodynamic shell outside of it (physics/hydrodynamic_size.hpp).
 enum class CellSize { mesh, hydrodynamic };
 enum class Precision { single_precision, double_precision };

@@ -31,6 +31,7 @@ Row measured(const AccuracySpec& accuracy) {
       default: return {45, 45, 12, 90, 1, 0.32};
     }
   }
+  if (accuracy.vertex_update == VertexUpdate::chebyshev) return {144, 360, 13, 100, 1, 1};
   switch (accuracy.delta_kernel) {
     case 2: return {17.4, 14.7, 0.65, 22, 0.42, 0.30};
     case 3: return {14.7, 16.0, 2.18, 41, 0.77, 0.39};

@@ -10,6 +10,7 @@
 #include "physics/membrane.hpp"
 #include "physics/stretching.hpp"
 #include "physics/suspension_sample.hpp"
+#include "physics/vertex_motion.hpp"
 
 namespace corpuscle {
 
@@ -45,6 +46,13 @@ class SuspensionOf final : public Suspension {
     if (problem.contact.enabled)
       contact_ = std::make_unique<Contact>(box, ContactParameters{lattice.contact_strength, lattice.contact_range}, cells_->cell_of_vertex());
     if (Stretching::needed(problem)) stretching_ = std::make_unique<Stretching>(problem, lattice, cells_->types());
+    mobility_ = mobility_model(cells_->types(), problem.accuracy.delta_kernel);
+    motion_ = std::make_unique<VertexMotion>(cells_->types(), problem.accuracy.vertex_update, mobility_);
+  }
+
+  void settle() override {
+    constexpr int rounds = 40;
+    if (cells_) corpuscle::settle(cells_->types(), mobility_, rounds, cells_->positions(), cells_->forces(), force_operator());
   }
 
   void step() override { step_with(nullptr); }
@@ -73,7 +81,7 @@ class SuspensionOf final : public Suspension {
   std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
   std::size_t bytes() const override {
     std::size_t total = fluid_.bytes();
-    if (cells_) total += cells_->bytes() + coupling_->bytes();
+    if (cells_) total += cells_->bytes() + coupling_->bytes() + motion_->bytes();
     for (const auto& m : membranes_) total += m->bytes();
     if (contact_) total += contact_->bytes();
     if (stretching_) total += stretching_->bytes();
@@ -81,6 +89,14 @@ class SuspensionOf final : public Suspension {
   }
 
  private:
+  ForceOperator force_operator() {
+    return [this](const VertexVectors& positions, const VertexVectors& forces) {
+      for (const auto& membrane : membranes_) membrane->compute_forces(positions, forces);
+      if (contact_) contact_->add_forces(positions, forces);
+      if (stretching_) stretching_->add_forces(forces);
+    };
+  }
+
   /// The time step. With a sample, each quantity is measured at the moment when it is known, at time t = step.
   void step_with(Sample* sample) {
     if (cells_) {
@@ -98,7 +114,7 @@ class SuspensionOf final : public Suspension {
       fluid_.gather_velocity();
       coupling_->interpolate(cells_->positions(), cells_->velocities(), fluid_.velocity());
       if (sample) sampler_->measure_shape(*cells_);
-      cells_->advance(problem_.accuracy.vertex_update);
+      motion_->advance(cells_->positions(), cells_->velocities(), cells_->forces(), force_operator());
     }
     if (sample) finish(*sample);
   }
@@ -140,6 +156,8 @@ class SuspensionOf final : public Suspension {
   std::vector<std::unique_ptr<Membrane>> membranes_;
   std::unique_ptr<Contact> contact_;
   std::unique_ptr<Stretching> stretching_;
+  std::unique_ptr<VertexMotion> motion_;
+  MobilityModel mobility_{};
   std::array<double, 2> spread_on_walls_{};
 };
 
@@ -199,7 +217,7 @@ std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lat
   std::size_t vertices = 0;
   for (const auto& type : lattice.cells) vertices += std::size_t(type.count) * type.vertices;
   bytes += vertices * (3 * 3 * 8 + 4);      // positions, velocities, forces, cell number
-  if (problem.accuracy.vertex_update == VertexUpdate::averaged) bytes += vertices * 3 * 8;
+  bytes += vertices * VertexMotion::bytes_per_vertex(problem.accuracy.vertex_update);
   if (runs_on_host) bytes += vertices * 8;  // slab keys and order of spreading
   if (cells && problem.contact.enabled) {
     const double edge = lattice.contact_range + ContactParameters{}.skin;

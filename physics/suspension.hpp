@@ -15,6 +15,9 @@ class Suspension {
  public:
   virtual ~Suspension() = default;
 
+  /// Lets membranes and contacts of a packed start relax, without flow: a packing knows neither the moduli nor the contact force of the scene. Cells move by a
+  /// fraction of the contact range. Before the first step only.
+  virtual void settle() = 0;
   /// One time step (docs/theory/model.md): F = -dE/dx + contact + external; f = spread F; collide and stream; u = interpolate; x += u.
   virtual void step() = 0;
   /// One time step, and what was measured at its beginning.

@@ -355,10 +355,12 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     m.area_dilation = spec.law == StrainLawKind::skalak ? spec.area_dilation * m.shear : 0;
     m.bending = spec.bending * m.shear * cell.radius * cell.radius;
     m.bending_constant = spec.bending_constant;
+    // The chebyshev update has no limit on these moduli: they follow kappa_S as in the paper's stiffest runs.
+    const double followed = problem.accuracy.vertex_update == VertexUpdate::chebyshev ? 5 : 0;
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
-    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::min(penalty * lattice.viscosity, area_modulus(cell, response)) : 0;
-    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : volume_modulus(cell, response);
+    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::max(std::min(penalty * lattice.viscosity, area_modulus(cell, response)), followed * m.shear) : 0;
+    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : std::max(volume_modulus(cell, response), followed * m.shear);
     cell.stretching_force = problem.cells[i].stretch.force.value_or(0) * m.shear * cell.radius;
   }
   if (problem.contact.enabled && kappa > 0) {
