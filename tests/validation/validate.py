@@ -44,7 +44,7 @@ def main():
     parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run (default: all): " + ", ".join(case_names()))
     parser.add_argument("--program", default=source / "build/release/app/corpuscle", help="the program to validate")
     parser.add_argument("--work", default=source / "build/validation", help="where results are kept")
-    parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), help="simulations at a time, one thread each")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(), help="simulations at a time, one thread each")
     parser.add_argument("--document", metavar="FILE", help="also write this Markdown file, and its plots into figures/ beside it")
     arguments = parser.parse_args()
     unknown = [name for name in arguments.cases if name not in case_names()]

@@ -2,6 +2,7 @@
 import numpy as np
 
 from analysis import order, section, to_zero
+from plots import BLUE, COLOURS, INK, MARKERS, ORANGE, panels, save
 from rows import Row
 from simulations import scene, seconds, steady_mean
 
@@ -55,6 +56,7 @@ def scenes():
     for law, ca in BOUNDARY_ELEMENTS:
         for box in BOXES:
             todo[law, ca, "box", box] = capsule(law, ca, RADII[0], 3, box=box)
+        todo[law, ca, "box at second radius", BOXES[0]] = capsule(law, ca, RADII[1], 3, box=BOXES[0])
         for re in REYNOLDS:
             todo[law, ca, "Re", re] = capsule(law, ca, RADII[0], 3, re=re)
     for kernel in KERNELS:
@@ -69,24 +71,32 @@ def checks():
     return {"tau 1": capsule("NH", 0.15, 5, 3, tau=1.0), "double": capsule("NH", 0.15, 5, 3, precision="double")}
 
 
+def box_shift(sizes, values):
+    """Relative change of each quantity from the first of the boxes to an infinite one. Walls and images act with (r/L)^3, the decay of a stresslet's flow gradient."""
+    values = np.array(values)
+    return np.array([to_zero([float(size) ** -3 for size in sizes], values[:, q], (1,))[0] for q in range(len(QUANTITIES))]) / values[0] - 1
+
+
 def corrections(values, law, ca):
-    """Factors that take the box to infinity and Re to zero, and the relative error of both. Images of a stresslet act with (r/L)^3."""
-    here = values[law, ca, 3, RADII[0]]
-    inverse = [box ** -3.0 for box in (BOX, *BOXES)]
-    boxes = np.array([here] + [values[law, ca, "box", box] for box in BOXES])
-    fits = [to_zero(inverse, boxes[:, q], (1, 5 / 3)) for q in range(len(QUANTITIES))]
-    slope = np.polyfit((RE, *REYNOLDS), np.array([here] + [values[law, ca, "Re", re] for re in REYNOLDS]), 1)[0]
-    box = np.array([limit for limit, _ in fits]) / here
-    inertia = 1 - RE * slope / here
-    return box, inertia, np.array([change for _, change in fits]) / abs(here)
+    """Function of the raw [eta] that gives the factors for an infinite box, and the factors for Re = 0.
+
+    The box acts through the capsule's stresslet, which the kernel's shell enlarges at small r: the shift is measured at two radii and taken as linear in the measured [eta].
+    """
+    first, second = values[law, ca, 3, RADII[0]], values[law, ca, 3, RADII[1]]
+    shift = box_shift((BOX, *BOXES), [first] + [values[law, ca, "box", box] for box in BOXES])
+    shift_second = box_shift((BOX, BOXES[0]), [second, values[law, ca, "box at second radius", BOXES[0]]])
+    slope = (shift_second - shift) / (second[2] - first[2])
+    inertia = np.polyfit((RE, *REYNOLDS), np.array([first] + [values[law, ca, "Re", re] for re in REYNOLDS]), 1)[0]
+    return lambda eta: 1 + shift + slope * (eta - first[2]), 1 - RE * inertia / first
 
 
 def extrapolated(values, law, ca, kernel):
-    """Limit r -> infinity with terms 1/r and 1/r^2, its error (the change without the second), and the observed order."""
-    raw = np.array([values[law, ca, kernel, radius] for radius in RADII])
+    """Limit r -> infinity with terms 1/r and 1/r^2, its error (see `limit_error`), the observed order, and the corrected values at each r."""
+    box, inertia = corrections(values, law, ca)
+    raw = np.array([values[law, ca, kernel, radius] * box(values[law, ca, kernel, radius][2]) * inertia for radius in RADII])
     inverse = [1 / radius for radius in RADII]
     limits = [to_zero(inverse, raw[:, q]) for q in range(len(QUANTITIES))]
-    return np.array([l for l, _ in limits]), np.array([e for _, e in limits]), [order(RADII, raw[:, q]) for q in range(len(QUANTITIES))]
+    return np.array([l for l, _ in limits]), np.array([e for _, e in limits]), [order(RADII, raw[:, q]) for q in range(len(QUANTITIES))], raw
 
 
 def analysed(run):
@@ -117,3 +127,45 @@ def rows(run):
             out.append(Row("capsule_shear", f"{QUANTITIES[q]} with {name} / as above", value[q] / base[q], 1.0, "the same run with tau = 3, single precision", 0.01,
                            "1 %: numerical parameters may not matter beside the 3 % asked of D", settings="NH Ca_G 0.15, r 5, kernel 3", seconds=result.seconds))
     return out
+
+
+def figures(run, folder):
+    results, values = analysed(run)
+    limits = {(law, ca, kernel): extrapolated(values, law, ca, kernel) for law, ca in BOUNDARY_ELEMENTS for kernel in KERNELS}
+    return [draw_states(limits, folder), draw_convergence(limits, folder)]
+
+
+def draw_states(limits, folder):
+    figure, axes = panels(2, 2, sharex=True)
+    for q, (quantity, axis) in enumerate(zip(("D", "inclination (rad)", r"$[\eta]$", r"$N_1/(\eta_0\dot\gamma\phi)$"), axes.flat)):
+        for law, colour, marker in (("NH", BLUE, "o"), ("SK", ORANGE, "s")):
+            ca = [c for l, c in BOUNDARY_ELEMENTS if l == law]
+            axis.plot(ca, [BOUNDARY_ELEMENTS[law, c][q] for c in ca], color=colour, label=f"{law}, boundary elements")
+            ours = np.array([[limits[law, c, k][0][q] for k in KERNELS] for c in ca])
+            axis.errorbar(ca, ours.mean(1), np.ptp(ours, axis=1) / 2, color=colour, marker=marker, linestyle="", capsize=3, label=f"{law}, corpuscle")
+        if q == 0:
+            for (name, points), marker in zip(PUBLISHED.items(), "x+"):
+                axis.plot(*zip(*points), marker, color=INK, label="NH, " + name)
+            axis.legend(fontsize=8)
+        axis.set(ylabel=quantity, xlabel=r"$Ca_G$" if q > 1 else None)
+    save(figure, folder, "validation_capsule_states.png")
+    return "validation_capsule_states.png", "Spherical capsules in unbounded shear, extrapolated in r, box and Re; points: mean of the three kernels, bars: their range."
+
+
+def draw_convergence(limits, folder):
+    law, ca = "NH", 0.15
+    figure, axes = panels(1, 2)
+    for q, name, axis in ((0, "D", axes[0]), (2, r"$[\eta]$", axes[1])):
+        for kernel, colour, marker in zip(sorted(KERNELS), COLOURS, MARKERS):
+            limit, _, orders, raw = limits[law, ca, kernel]
+            inverse = np.array([0, *(1 / r for r in reversed(RADII))])
+            curve = np.polyfit(inverse, [limit[q], *raw[::-1, q]], 2)
+            fine = np.linspace(0, inverse[-1], 50)
+            axis.plot(fine, np.polyval(curve, fine), color=colour, linewidth=1)
+            axis.plot(inverse[1:], raw[::-1, q], marker, color=colour, label=f"{kernel} points")
+            axis.plot(0, limit[q], marker, color=colour, fillstyle="none", clip_on=False)
+        axis.axhline(BOUNDARY_ELEMENTS[law, ca][q], color=INK, linestyle="--", linewidth=1, label="boundary elements")
+        axis.set(xlabel="1/r (lattice units)", ylabel=name)
+    axes[1].legend()
+    save(figure, folder, "validation_capsule_convergence.png")
+    return "validation_capsule_convergence.png", "Convergence with the radius in lattice units, neo-Hookean, Ca_G = 0.15, corrected for box and Re; open symbols: extrapolated."

@@ -1,6 +1,7 @@
 """Volume and area of a red cell over 100 units of strain, from stiff to soft."""
 import numpy as np
 
+from plots import BLUE, GREEN, ORANGE, panels, save
 from rows import Row
 from simulations import scene
 
@@ -43,3 +44,16 @@ def rows(run):
             out.append(Row("drift", f"largest {name} change (%), {preset}, Ca {ca:g}", 100 * np.abs(values).max(), 1.0, "required accuracy", test="below",
                            settings=f"r {result.lattice['radius']:g}, box {BOX}, tau 3, Re {result.lattice['reynolds_number']:.2g}, {result.lattice['steps']} steps; trend {100 * trend:+.3f} %", seconds=result.seconds))
     return out
+
+
+def figures(run, folder):
+    figure, axes = panels(1, 2, sharex=True)
+    for ((preset, ca), result), colour in zip(run.all(scenes()).items(), 2 * (BLUE, ORANGE, GREEN)):
+        strain, volume, area = relative(result)
+        for axis, values in zip(axes, (volume, area)):
+            axis.plot(strain, 100 * values, color=colour, linestyle="-" if preset == "reference" else ":", linewidth=1, label=f"{preset}, Ca = {ca:g}")
+    axes[0].set(xlabel="strain", ylabel="volume change (%)")
+    axes[1].set(xlabel="strain", ylabel="area change (%)")
+    axes[0].legend(fontsize=8)
+    save(figure, folder, "validation_drift.png")
+    return [("validation_drift.png", "Volume and area of one red cell over 100 units of strain.")]

@@ -2,6 +2,7 @@
 import numpy as np
 
 from analysis import rotation_vector, section, unwrapped
+from plots import COLOURS, INK, panels, save
 from rows import Row
 from simulations import scene, seconds
 
@@ -62,3 +63,18 @@ def rows(run):
     out.append(Row("red_cell", "transition between tumbling and tank-treading, Ca", (below + above) / 2, 0.12, SOURCE, 1 / 3, "the published interval, 0.12 +- 0.04", error=(above - below) / 2,
                    settings=f"r {RADIUS}; Ca = {CAPILLARY}", seconds=seconds(results)))
     return out
+
+
+def figures(run, folder):
+    results = run.all(scenes())
+    shown = (CAPILLARY[0], 0.08, 0.12, 0.16, CAPILLARY[-1])
+    figure, (left, right) = panels(1, 2, sharex=True)
+    for ca, colour in zip(shown, (*COLOURS, INK)):
+        strain, shape, membrane = turned(results[ca])
+        left.plot(strain, (shape - shape[0]) / (2 * np.pi), color=colour, label=f"Ca = {ca}")
+        right.plot(strain, membrane / (2 * np.pi), color=colour)
+    left.set(xlabel="strain", ylabel="turns of the shape")
+    right.set(xlabel="strain", ylabel="turns of the membrane")
+    left.legend(fontsize=9)
+    save(figure, folder, "validation_red_cell.png")
+    return [("validation_red_cell.png", "A red cell in shear: a tumbling cell turns as a whole, in a tank-treading one only the membrane turns.")]

@@ -3,6 +3,7 @@ import numpy as np
 
 import stiff_sphere
 from analysis import block_error
+from plots import BLUE, GREEN, INK, ORANGE, panels, save
 from rows import Row
 from simulations import scene
 
@@ -12,7 +13,7 @@ Stiff spheres (Ca_G = 0.02) at r = 5 lattice units. The kernel makes them hydrod
 radii away from the walls.
 """
 COST = 5
-CA, RADIUS, KERNEL, BOX, TAU, STRAIN, SETTLED = 0.02, 5, 3, (8, 8, 14), 3.0, 14, 3
+CA, RADIUS, KERNEL, BOX, TAU, STRAIN, SETTLED = 0.02, 5, 3, (8, 8, 14), 3.0, 12, 2
 PHI_H = (0.05, 0.10, 0.15)
 ASSUMED = 3.4  # [eta] of one sphere, only to choose the number of cells
 
@@ -22,7 +23,7 @@ def suspension(phi_h):
     return scene(
         box={"size": list(BOX)}, flow={"capillary_number_G": CA, "reynolds_number_max": 0.1},
         cells=[{"shape": "sphere", "volume_fraction": round(phi_h * 2.5 / ASSUMED, 4), "membrane": membrane}],
-        accuracy={"radius": RADIUS, "delta_kernel": KERNEL, "collision": "trt", "relaxation_time": TAU, "precision": "single", "mach_max": 0.3},
+        accuracy={"radius": RADIUS, "delta_kernel": KERNEL, "collision": "trt", "relaxation_time": TAU, "precision": "single", "mach_max": 0.3, "shear_modulus": 0.8},
         run={"strain": STRAIN}, output={"series_every": 0.05, "snapshot_every": 0})
 
 
@@ -62,3 +63,18 @@ def rows(run):
         out.append(Row("stiff_suspension", f"eta_r at phi_h = {phi:.3f} below Eilers", 1 + excess, eilers(phi), "Eilers 1941", 2 * error / (1 + excess), "2 standard errors above the bound", error=error,
                        settings=settings, seconds=result.seconds, test="below"))
     return out
+
+
+def figures(run, folder):
+    enlargement = (1 + stiff_sphere.shells(run)[KERNEL, RADIUS] / RADIUS) ** 3
+    figure, axis = panels(1, 1, width=6)
+    points = np.array([bulk(result, enlargement) for result in run.all(scenes()).values()])
+    axis.errorbar(points[:, 0], 1 + points[:, 1], 2 * points[:, 2], marker="o", linestyle="", color=BLUE, capsize=3, label="corpuscle, two standard errors")
+    phi = np.linspace(0, 0.2, 50)
+    axis.plot(phi, 1 + 2.5 * phi, color=GREEN, label="Einstein")
+    axis.fill_between(phi, batchelor(phi, 5.2), batchelor(phi, 6.2), color=ORANGE, alpha=0.4, label="Batchelor and Green")
+    axis.plot(phi, eilers(phi), "--", color=INK, label="Eilers")
+    axis.set(xlabel=r"$\phi_h$", ylabel=r"$\eta_r$")
+    axis.legend(fontsize=9)
+    save(figure, folder, "validation_stiff_suspension.png")
+    return [("validation_stiff_suspension.png", "Relative viscosity of stiff spheres.")]
