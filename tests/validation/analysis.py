@@ -1,4 +1,5 @@
 """Shapes, angles and extrapolations that several cases need."""
+
 import numpy as np
 
 
@@ -32,7 +33,7 @@ def order(radii, values):
     if (f1 - f2) * (f2 - f3) <= 0:
         return np.nan
     wanted, p = (f1 - f2) / (f2 - f3), np.linspace(0.05, 8, 4000)
-    ratio = (r1 ** -p - r2 ** -p) / (r2 ** -p - r3 ** -p)
+    ratio = (r1**-p - r2**-p) / (r2**-p - r3**-p)
     return np.nan if not ratio.min() <= wanted <= ratio.max() else float(np.interp(wanted, ratio, p))
 
 
@@ -41,10 +42,24 @@ def to_zero(h, values, powers=(1, 2)):
     h, values = np.asarray(h, float), np.asarray(values, float)
 
     def limit(p):
-        return np.linalg.lstsq(np.stack([np.ones_like(h)] + [h ** k for k in p], 1), values, rcond=None)[0][0]
+        return np.linalg.lstsq(np.stack([np.ones_like(h)] + [h**k for k in p], 1), values, rcond=None)[0][0]
 
     best = limit(powers)
     return best, abs(best - limit(powers[:-1]))
+
+
+def resolved(radii, values):
+    """Limit r -> infinity of values at three radii with terms 1/r and 1/r^2, its error, and the order of convergence.
+
+    The error is the difference to the power law through the same points; where they have no order, to the line.
+    """
+    limit, change = to_zero([1 / r for r in radii], values)
+    p = order(radii, values)
+    if np.isfinite(p):
+        weights = [float(r) ** -p for r in radii]
+        amplitude = (values[0] - values[2]) / (weights[0] - weights[2])
+        change = abs(limit - (values[2] - amplitude * weights[2]))
+    return limit, change, p
 
 
 def block_error(values, blocks=8):

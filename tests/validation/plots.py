@@ -1,4 +1,5 @@
 """Common look of the validation's plots."""
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -11,8 +12,8 @@ COLOURS, MARKERS = (BLUE, ORANGE, GREEN, PURPLE), ("o", "s", "^", "D")
 
 def panels(rows, columns, width=9.0, height=3.6, **options):
     """A figure with its axes, width x (rows * height) inches."""
-    plt.rcParams.update({"font.size": 11, "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
-                         "axes.spines.right": False, "legend.frameon": False})
+    ink = {name: INK for name in ("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color")}
+    plt.rcParams.update({"font.size": 11, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, **ink})
     return plt.subplots(rows, columns, figsize=(width, rows * height), dpi=140, layout="constrained", **options)
 
 

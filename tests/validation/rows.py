@@ -1,4 +1,5 @@
 """A row of the validation table, the printed table and its Markdown form."""
+
 import math
 from dataclasses import dataclass
 
@@ -7,7 +8,8 @@ from dataclasses import dataclass
 class Row:
     """One number of ours beside one that is not ours.
 
-    `tolerance` is relative to the reference and `reason` says from which error analysis it comes. `test` is "equal" (|ours/reference - 1| <= tolerance), "below" or "above" (the reference is a bound, give or take the tolerance).
+    `tolerance` is relative to the reference, `reason` says from which error analysis it comes. `test` is "equal"
+    (|ours/reference - 1| <= tolerance), "below" or "above" (the reference is a bound, give or take the tolerance).
     """
 
     case: str
@@ -19,7 +21,7 @@ class Row:
     reason: str = ""
     error: float = math.nan  # statistical and extrapolation error of ours
     settings: str = ""
-    seconds: float = 0.0     # core seconds of the simulations behind it
+    seconds: float = 0.0  # core seconds of the simulations behind it
     test: str = "equal"
     note: str = ""
 
@@ -70,7 +72,8 @@ def markdown_table(rows):
     """Rows of one case; what all of them share (source, settings, reason) stands once, below."""
     out = ["| quantity | ours | reference | error | tolerance | | resolution, settings | core s |", "|---|---|---|---|---|---|---|---|"]
     for r in rows:
-        out.append(f"| {r.quantity} | {_ours(r)} | {_reference(r)} | {_error(r)} | {_tolerance(r)} | {'pass' if r.passed else '**fail**'} | {r.settings} | {r.seconds:.0f} |")
+        cells = (r.quantity, _ours(r), _reference(r), _error(r), _tolerance(r), "pass" if r.passed else "**fail**", r.settings, f"{r.seconds:.0f}")
+        out.append("| " + " | ".join(cells) + " |")
     for title, texts in (("References", [r.source for r in rows]), ("Tolerances", [r.reason for r in rows]), ("Notes", [r.note for r in rows])):
         unique = [text for text in dict.fromkeys(texts) if text]
         if unique:

@@ -1,4 +1,5 @@
 """Runs scenes for the validation, each once: results stay in a work folder, named by the scene's text and the program's sources."""
+
 import hashlib
 import json
 import os
@@ -107,7 +108,9 @@ class Simulations:
         begin = time.monotonic()
         command = [self.program, "run", str(folder / "asked.toml"), "--output", str(folder / "run"), "--overwrite", "--threads", "1"]
         with open(folder / "log.txt", "w") as log:
-            process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, env={**os.environ, "OMP_NUM_THREADS": "1", "OMP_PROC_BIND": "false"})
+            process = subprocess.Popen(
+                command, stdout=log, stderr=subprocess.STDOUT, env={**os.environ, "OMP_NUM_THREADS": "1", "OMP_PROC_BIND": "false"}
+            )
             self._running.add(process)
             code = process.wait()
             self._running.discard(process)
@@ -120,6 +123,10 @@ class Simulations:
         (folder / "complete").touch()
         self.log(f"  {time.monotonic() - begin:7.1f} s  {name}")
         return Result(folder)
+
+    def total_seconds(self):
+        """Run time of all simulations that were asked for, in core seconds."""
+        return seconds([future.result() for future in self._futures.values() if future.done() and not future.exception()])
 
     def stop(self):
         """Ends the runs under way; what they have not finished is run again the next time."""

@@ -3,9 +3,11 @@
 
     python tests/validation/validate.py --program build/release/app/corpuscle [CASE ...] [--document docs/validation.md]
 
-A case is a module in tests/validation/cases/. Results are kept in the work folder, so an interrupted validation goes on where it stopped, and the document can be written again without a run.
+A case is a module in tests/validation/cases/. Results are kept in the work folder, so an interrupted validation goes on
+where it stopped, and the document can be written again without a run.
 Needs: pip install numpy h5py matplotlib. Exit code 1: a row failed or a case did not finish.
 """
+
 import argparse
 import concurrent.futures
 import importlib
@@ -44,7 +46,8 @@ def main():
     parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run (default: all): " + ", ".join(case_names()))
     parser.add_argument("--program", default=source / "build/release/app/corpuscle", help="the program to validate")
     parser.add_argument("--work", default=source / "build/validation", help="where results are kept")
-    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(), help="simulations at a time, one thread each")
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    parser.add_argument("--jobs", type=int, default=cores, help="simulations at a time, one thread each")
     parser.add_argument("--document", metavar="FILE", help="also write this Markdown file, and its plots into figures/ beside it")
     arguments = parser.parse_args()
     unknown = [name for name in arguments.cases if name not in case_names()]

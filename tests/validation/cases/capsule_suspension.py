@@ -1,4 +1,5 @@
 """Suspensions of neo-Hookean capsules: [eta] phi at low phi, and particle stress against wall stress."""
+
 import numpy as np
 
 from analysis import block_error
@@ -7,8 +8,9 @@ from simulations import scene, seconds
 
 TITLE = "Suspensions of capsules: dilute limit and the two measurements of stress"
 ABOUT = """
-Neo-Hookean spheres, Ca_G = 0.15, between walls 12 r apart. The dilute limit of (eta_r - 1)/phi, a line through two volume fractions, is compared with the [eta] of one capsule in the middle of the same box at the same resolution, so
-that kernel and box don't enter. The wall stress is measured on the walls, the particle stress from the membranes.
+Neo-Hookean spheres, Ca_G = 0.15, between walls 12 r apart. The dilute limit of (eta_r - 1)/phi, a line through two volume fractions, is
+compared with the [eta] of one capsule in the middle of the same box at the same resolution, so that kernel and box don't enter. The wall
+stress is measured on the walls, the particle stress from the membranes.
 """
 COST = 6
 CA, RADIUS, BOX, RE, TAU, SETTLED = 0.15, 5, (12, 8, 12), 0.1, 3.0, 5
@@ -20,9 +22,13 @@ def suspension(phi, seed=1):
     cells = {"shape": "sphere", "membrane": {"law": "neo_hookean", "bending": 0.0}}
     cells |= {"volume_fraction": phi} if phi else {"count": 1, "position": [size / 2 for size in BOX]}
     return scene(
-        box={"size": list(BOX)}, flow={"capillary_number_G": CA, "reynolds_number_max": RE}, cells=[cells],
+        box={"size": list(BOX)},
+        flow={"capillary_number_G": CA, "reynolds_number_max": RE},
+        cells=[cells],
         accuracy={"radius": RADIUS, "delta_kernel": 3, "collision": "trt", "relaxation_time": TAU, "precision": "single", "mach_max": 0.3},
-        run={"strain": STRAIN if phi else 2 * SETTLED, "seed": seed}, output={"series_every": 0.05, "snapshot_every": 0})
+        run={"strain": STRAIN if phi else 2 * SETTLED, "seed": seed},
+        output={"series_every": 0.05, "snapshot_every": 0},
+    )
 
 
 def scenes():
@@ -50,14 +56,37 @@ def rows(run):
     slope = (per_phi[1] - per_phi[0]) / (phis[1] - phis[0])
     limit = per_phi[0] - slope * phis[0]
     error = np.hypot(errors[0] * phis[1], errors[1] * phis[0]) / (phis[1] - phis[0])
-    detail = f"r {RADIUS}, box {BOX}, seeds {SEEDS}; phi {phis[0]:.4f}, {phis[1]:.4f}: {per_phi[0]:.3f} ± {errors[0]:.3f}, {per_phi[1]:.3f} ± {errors[1]:.3f}"
-    out.append(Row("capsule_suspension", "(eta_r - 1)/phi, phi to 0, over [eta] of one capsule", limit / alone, 1.0, "definition of [eta]; [eta] itself is compared in capsule_shear",
-                   0.03 + 2 * error / alone, "2 standard errors, and 3 % as cells away from the middle see a wall", error=error / alone, settings=detail + f"; one capsule: {alone:.3f}",
-                   seconds=seconds(results) - results["dense", DENSE, 1].seconds))
+    each = "; ".join(f"phi {phis[i]:.4f}: {per_phi[i]:.3f} ± {errors[i]:.3f}" for i in range(len(DILUTE)))
+    detail = f"r {RADIUS}, box {BOX}, seeds {SEEDS}; {each}"
+    out.append(
+        Row(
+            "capsule_suspension",
+            "(eta_r - 1)/phi, phi to 0, over [eta] of one capsule",
+            limit / alone,
+            1.0,
+            "definition of [eta]; [eta] itself is compared in capsule_shear",
+            0.03 + 2 * error / alone,
+            "2 standard errors, and 3 % as cells away from the middle see a wall",
+            error=error / alone,
+            settings=detail + f"; one capsule: {alone:.3f}",
+            seconds=seconds(results) - results["dense", DENSE, 1].seconds,
+        )
+    )
     for key in [("dilute", phi, 1) for phi in DILUTE] + [("dense", DENSE, 1)]:
         particle, wall = excess(results[key], "relative_viscosity"), excess(results[key], "wall_relative_viscosity")
         error = block_error(wall - particle) / particle.mean()
-        out.append(Row("capsule_suspension", f"wall excess / particle excess, phi = {key[1]}", wall.mean() / particle.mean(), 1.0, "momentum balance, exact in the time average",
-                       max(2 * error, 0.005), "2 standard errors of the difference, at least 0.5 % (single precision)", error=error,
-                       settings=f"r {RADIUS}, box {BOX}; eta_r = {1 + particle.mean():.4f} ± {block_error(particle):.4f}, {STRAIN - SETTLED} units of strain", seconds=results[key].seconds))
+        out.append(
+            Row(
+                "capsule_suspension",
+                f"wall excess / particle excess, phi = {key[1]}",
+                wall.mean() / particle.mean(),
+                1.0,
+                "momentum balance, exact in the time average",
+                max(2 * error, 0.005),
+                "2 standard errors of the difference, at least 0.5 % (single precision)",
+                error=error,
+                settings=f"r {RADIUS}, box {BOX}; eta_r = {1 + particle.mean():.4f} ± {block_error(particle):.4f}, {STRAIN - SETTLED} units of strain",
+                seconds=results[key].seconds,
+            )
+        )
     return out

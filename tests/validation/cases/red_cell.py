@@ -1,4 +1,5 @@
 """A single red cell in shear: tumbling at small Ca, tank-treading with a swinging axis at large Ca."""
+
 import numpy as np
 
 from analysis import rotation_vector, section, unwrapped
@@ -8,8 +9,10 @@ from simulations import scene, seconds
 
 TITLE = "A single red cell: tumbling and tank-treading"
 ABOUT = """
-The red cell of `scenes/single_red_cell.toml` (kappa_alpha = 2.5 kappa_S, kappa_B = kappa_S r^2/405, equal viscosities) with its axis in the shear plane. Two angles are followed: that of the shape (the ellipsoid with the cell's
-second moments) and that of the membrane (mean rotation of the vertices). A tumbling cell turns both together, a tank-treading one only its membrane while the shape swings about a fixed inclination.
+The red cell of `scenes/single_red_cell.toml` (kappa_alpha = 2.5 kappa_S, kappa_B = kappa_S r^2/405, equal viscosities) with its axis in the
+shear plane. Two angles are followed: that of the shape (the ellipsoid with the cell's second moments) and that of the membrane (mean
+rotation of the vertices). A tumbling cell turns both together, a tank-treading one only its membrane while the shape swings about a fixed
+inclination.
 """
 COST = 8
 CAPILLARY = (0.02, 0.06, 0.08, 0.1, 0.12, 0.14, 0.16, 0.3)
@@ -19,10 +22,14 @@ SOURCE = "transition at 0.08 < Ca < 0.16 for these parameters (Krüger, Gross, R
 
 def cell(ca):
     return scene(
-        box={"size": list(BOX)}, flow={"capillary_number": ca, "reynolds_number_max": RE},
-        cells=[{"shape": "red_cell", "count": 1, "position": [size / 2 for size in BOX], "axis": [0.0, 0.0, 1.0]}], contact={"enabled": False},
+        box={"size": list(BOX)},
+        flow={"capillary_number": ca, "reynolds_number_max": RE},
+        cells=[{"shape": "red_cell", "count": 1, "position": [size / 2 for size in BOX], "axis": [0.0, 0.0, 1.0]}],
+        contact={"enabled": False},
         accuracy={"preset": "standard", "radius": RADIUS, "collision": "trt", "relaxation_time": TAU, "mach_max": 0.3},
-        run={"strain": STRAIN}, output={"series_every": 0.05, "snapshot_every": 0.5})
+        run={"strain": STRAIN},
+        output={"series_every": 0.05, "snapshot_every": 0.5},
+    )
 
 
 def turned(result):
@@ -55,13 +62,35 @@ def rows(run):
         drift = f"volume {100 * result.series('volume_drift_max').max():.2f} %, area {100 * result.series('area_drift_max').max():.2f} %"
         if ca <= 0.08 or ca >= 0.16:
             state = "tumbles" if ca <= 0.08 else "tank-treads"
-            out.append(Row("red_cell", f"Ca {ca}: {state}; turns of the shape / of the membrane", shape / membrane, 0.5, SOURCE, test="above" if ca <= 0.08 else "below",
-                           reason="a tumbling cell has 1, a tank-treading one 0", settings=f"r {RADIUS}, box {BOX}, Re {RE}; shape {shape:.3f}, membrane {membrane:.3f} of the shear rate; {drift}",
-                           seconds=result.seconds))
+            out.append(
+                Row(
+                    "red_cell",
+                    f"Ca {ca}: {state}; turns of the shape / of the membrane",
+                    shape / membrane,
+                    0.5,
+                    SOURCE,
+                    test="above" if ca <= 0.08 else "below",
+                    reason="a tumbling cell has 1, a tank-treading one 0",
+                    settings=f"r {RADIUS}, box {BOX}, Re {RE}; shape {shape:.3f}, membrane {membrane:.3f} of the shear rate; {drift}",
+                    seconds=result.seconds,
+                )
+            )
     below = max((ca for ca in CAPILLARY if tumbling[ca]), default=0.0)
     above = min((ca for ca in CAPILLARY if not tumbling[ca] and ca > below), default=float("nan"))
-    out.append(Row("red_cell", "transition between tumbling and tank-treading, Ca", (below + above) / 2, 0.12, SOURCE, 1 / 3, "the published interval, 0.12 +- 0.04", error=(above - below) / 2,
-                   settings=f"r {RADIUS}; Ca = {CAPILLARY}", seconds=seconds(results)))
+    out.append(
+        Row(
+            "red_cell",
+            "transition between tumbling and tank-treading, Ca",
+            (below + above) / 2,
+            0.12,
+            SOURCE,
+            1 / 3,
+            "the published interval, 0.12 +- 0.04",
+            error=(above - below) / 2,
+            settings=f"r {RADIUS}; Ca = {CAPILLARY}",
+            seconds=seconds(results),
+        )
+    )
     return out
 
 

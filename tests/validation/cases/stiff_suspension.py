@@ -1,4 +1,5 @@
 """Suspensions of stiff spheres at low phi: Batchelor's second order and Eilers's formula."""
+
 import numpy as np
 
 import stiff_sphere
@@ -9,8 +10,8 @@ from simulations import scene
 
 TITLE = "Suspensions of stiff spheres"
 ABOUT = """
-Stiff spheres (Ca_G = 0.02) at r = 5 lattice units. The kernel makes them hydrodynamically larger: phi_h = phi [eta]/2.5 with the [eta] of a single one (stiff_sphere, same resolution). Viscosity and phi_h are those of the bulk, four
-radii away from the walls.
+Stiff spheres (Ca_G = 0.02) at r = 5 lattice units. The kernel makes them hydrodynamically larger: phi_h = phi [eta]/2.5 with the [eta] of a
+single one (stiff_sphere, same resolution). Viscosity and phi_h are those of the bulk, four radii away from the walls.
 """
 COST = 5
 CA, RADIUS, KERNEL, BOX, TAU, STRAIN, SETTLED = 0.02, 5, 3, (8, 8, 14), 3.0, 12, 2
@@ -21,10 +22,21 @@ ASSUMED = 3.4  # [eta] of one sphere, only to choose the number of cells
 def suspension(phi_h):
     membrane = stiff_sphere.stiff_membrane(RADIUS)
     return scene(
-        box={"size": list(BOX)}, flow={"capillary_number_G": CA, "reynolds_number_max": 0.1},
+        box={"size": list(BOX)},
+        flow={"capillary_number_G": CA, "reynolds_number_max": 0.1},
         cells=[{"shape": "sphere", "volume_fraction": round(phi_h * 2.5 / ASSUMED, 4), "membrane": membrane}],
-        accuracy={"radius": RADIUS, "delta_kernel": KERNEL, "collision": "trt", "relaxation_time": TAU, "precision": "single", "mach_max": 0.3, "shear_modulus": 0.8},
-        run={"strain": STRAIN}, output={"series_every": 0.05, "snapshot_every": 0})
+        accuracy={
+            "radius": RADIUS,
+            "delta_kernel": KERNEL,
+            "collision": "trt",
+            "relaxation_time": TAU,
+            "precision": "single",
+            "mach_max": 0.3,
+            "shear_modulus": 0.8,
+        },
+        run={"strain": STRAIN},
+        output={"series_every": 0.05, "snapshot_every": 0},
+    )
 
 
 def scenes():
@@ -36,7 +48,7 @@ def eilers(phi):
 
 
 def batchelor(phi, second):
-    return 1 + 2.5 * phi + second * phi ** 2
+    return 1 + 2.5 * phi + second * phi**2
 
 
 def bulk(result, enlargement):
@@ -58,10 +70,35 @@ def rows(run):
         phi, excess, error = bulk(result, enlargement)
         low, high = batchelor(phi, 5.2), batchelor(phi, 6.2)
         settings = f"r {RADIUS}, box {BOX}, {result.summary['cell_count']} cells, {STRAIN - SETTLED} units of strain; phi_h = phi x {enlargement:.3f}"
-        out.append(Row("stiff_suspension", f"eta_r - 1 at phi_h = {phi:.3f}", excess, (low + high) / 2 - 1, "Batchelor and Green 1972: 1 + 2.5 phi + (5.2 to 6.2) phi^2",
-                       0.05 + (high - low) / 2 / (low - 1) + 2 * error / excess, "2 standard errors, half the published interval, 5 % for phi_h (as [eta])", error=error, settings=settings, seconds=result.seconds))
-        out.append(Row("stiff_suspension", f"eta_r at phi_h = {phi:.3f} below Eilers", 1 + excess, eilers(phi), "Eilers 1941", 2 * error / (1 + excess), "2 standard errors above the bound", error=error,
-                       settings=settings, seconds=result.seconds, test="below"))
+        out.append(
+            Row(
+                "stiff_suspension",
+                f"eta_r - 1 at phi_h = {phi:.3f}",
+                excess,
+                (low + high) / 2 - 1,
+                "Batchelor and Green 1972: 1 + 2.5 phi + (5.2 to 6.2) phi^2",
+                0.05 + (high - low) / 2 / (low - 1) + 2 * error / excess,
+                "2 standard errors, half the published interval, 5 % for phi_h (as [eta])",
+                error=error,
+                settings=settings,
+                seconds=result.seconds,
+            )
+        )
+        out.append(
+            Row(
+                "stiff_suspension",
+                f"eta_r at phi_h = {phi:.3f} below Eilers",
+                1 + excess,
+                eilers(phi),
+                "Eilers 1941",
+                2 * error / (1 + excess),
+                "2 standard errors above the bound",
+                error=error,
+                settings=settings,
+                seconds=result.seconds,
+                test="below",
+            )
+        )
     return out
 
 
@@ -69,7 +106,9 @@ def figures(run, folder):
     enlargement = (1 + stiff_sphere.shells(run)[KERNEL, RADIUS] / RADIUS) ** 3
     figure, axis = panels(1, 1, width=6)
     points = np.array([bulk(result, enlargement) for result in run.all(scenes()).values()])
-    axis.errorbar(points[:, 0], 1 + points[:, 1], 2 * points[:, 2], marker="o", linestyle="", color=BLUE, capsize=3, label="corpuscle, two standard errors")
+    axis.errorbar(
+        points[:, 0], 1 + points[:, 1], 2 * points[:, 2], marker="o", linestyle="", color=BLUE, capsize=3, label="corpuscle, two standard errors"
+    )
     phi = np.linspace(0, 0.2, 50)
     axis.plot(phi, 1 + 2.5 * phi, color=GREEN, label="Einstein")
     axis.fill_between(phi, batchelor(phi, 5.2), batchelor(phi, 6.2), color=ORANGE, alpha=0.4, label="Batchelor and Green")
