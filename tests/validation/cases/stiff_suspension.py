@@ -76,7 +76,7 @@ def rows(run):
                 f"eta_r - 1 at phi_h = {phi:.3f}",
                 excess,
                 (low + high) / 2 - 1,
-                "Batchelor and Green 1972: 1 + 2.5 phi + (5.2 to 6.2) phi^2",
+                "1 + 2.5 phi + (5.2 to 6.2) phi^2, Batchelor and Green 1972, Batchelor 1977",
                 0.05 + (high - low) / 2 / (low - 1) + 2 * error / excess,
                 "2 standard errors, half the published interval, 5 % for phi_h (as [eta])",
                 error=error,
