@@ -15,7 +15,7 @@ stress is measured on the walls, the particle stress from the membranes.
 COST = 6
 CA, RADIUS, BOX, RE, TAU, SETTLED = 0.15, 5, (12, 8, 12), 0.1, 3.0, 5
 DILUTE, DENSE, SEEDS = (0.02, 0.05), 0.2, (1, 2)
-STRAIN = 20
+STRAIN, LATE = 20, 10  # wall stress lags by the diffusion of momentum, H^2/(pi^2 nu) = 1.5 units of strain: at LATE 0.1 % of the start is left
 
 
 def suspension(phi, seed=1):
@@ -36,9 +36,9 @@ def scenes():
     return todo | {("dense", DENSE, 1): suspension(DENSE), "one": suspension(0)}
 
 
-def excess(result, name):
+def excess(result, name, after=SETTLED):
     """eta_r - 1 in the steady part."""
-    return result.series(name)[result.series("strain") > SETTLED] - 1
+    return result.series(name)[result.series("strain") > after] - 1
 
 
 def rows(run):
@@ -66,15 +66,16 @@ def rows(run):
             1.0,
             "definition of [eta]; [eta] itself is compared in capsule_shear",
             0.03 + 2 * error / alone,
-            "2 standard errors, and 3 % as cells away from the middle see a wall",
+            "2 standard errors, and 3 % as cells away from the middle see a wall (as the box effect of capsule_shear, 5 % at 6 r)",
             error=error / alone,
             settings=detail + f"; one capsule: {alone:.3f}",
             seconds=seconds(results) - results["dense", DENSE, 1].seconds,
         )
     )
     for key in [("dilute", phi, 1) for phi in DILUTE] + [("dense", DENSE, 1)]:
-        particle, wall = excess(results[key], "relative_viscosity"), excess(results[key], "wall_relative_viscosity")
+        particle, wall = (excess(results[key], name, LATE) for name in ("relative_viscosity", "wall_relative_viscosity"))
         error = block_error(wall - particle) / particle.mean()
+        compressible = 3 * results[key].lattice["viscosity"] * results[key].lattice["shear_rate"]
         out.append(
             Row(
                 "capsule_suspension",
@@ -82,10 +83,11 @@ def rows(run):
                 wall.mean() / particle.mean(),
                 1.0,
                 "momentum balance, exact in the time average",
-                max(2 * error, 0.005),
-                "2 standard errors of the difference, at least 0.5 % (single precision)",
+                compressible + 2 * error,
+                f"2 standard errors of the difference, and 3 eta_0 x shear rate = {100 * compressible:.1f} %: the cells' pressure changes the density at the walls, "
+                "and the viscosity rho nu with it",
                 error=error,
-                settings=f"r {RADIUS}, box {BOX}; eta_r = {1 + particle.mean():.4f} ± {block_error(particle):.4f}, {STRAIN - SETTLED} units of strain",
+                settings=f"r {RADIUS}, box {BOX}; eta_r = {1 + particle.mean():.4f} ± {block_error(particle):.4f}, {STRAIN - LATE} units of strain",
                 seconds=results[key].seconds,
             )
         )
