@@ -49,17 +49,18 @@ def to_zero(h, values, powers=(1, 2)):
 
 
 def resolved(radii, values):
-    """Limit r -> infinity of values at three radii with terms 1/r and 1/r^2, its error, and the order of convergence.
+    """Limit r -> infinity of values at three radii, its error, and the observed order of convergence.
 
-    The error is the difference to the power law through the same points; where they have no order, to the line.
+    Terms 1/r and 1/r^2 describe a shell of the kernel; where the values converge faster than 1/r^2 no such shell is seen, and the power law
+    through them is the limit. The error is the difference between both; where there is no order, the difference to the line in 1/r.
     """
     limit, change = to_zero([1 / r for r in radii], values)
     p = order(radii, values)
-    if np.isfinite(p):
-        weights = [float(r) ** -p for r in radii]
-        amplitude = (values[0] - values[2]) / (weights[0] - weights[2])
-        change = abs(limit - (values[2] - amplitude * weights[2]))
-    return limit, change, p
+    if not np.isfinite(p):
+        return limit, change, p
+    weights = [float(r) ** -p for r in radii]
+    power = values[2] - (values[0] - values[2]) / (weights[0] - weights[2]) * weights[2]
+    return power if p > 2 else limit, abs(limit - power), p
 
 
 def block_error(values, blocks=8):

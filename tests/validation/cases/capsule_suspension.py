@@ -84,8 +84,8 @@ def rows(run):
                 1.0,
                 "momentum balance, exact in the time average",
                 compressible + 2 * error,
-                f"2 standard errors of the difference, and 3 eta_0 x shear rate = {100 * compressible:.1f} %: the cells' pressure changes the density at the walls, "
-                "and the viscosity rho nu with it",
+                f"2 standard errors of the difference, and 3 eta_0 x shear rate = {100 * compressible:.1f} %: the cells' pressure changes the "
+                "density at the walls, and the viscosity rho nu with it",
                 error=error,
                 settings=f"r {RADIUS}, box {BOX}; eta_r = {1 + particle.mean():.4f} ± {block_error(particle):.4f}, {STRAIN - LATE} units of strain",
                 seconds=results[key].seconds,

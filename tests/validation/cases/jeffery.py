@@ -3,7 +3,7 @@
 import numpy as np
 
 import stiff_sphere
-from analysis import resolved, section, unwrapped
+from analysis import resolved, section, to_zero, unwrapped
 from plots import BLUE, GREEN, INK, panels, save
 from rows import Row
 from simulations import scene, seconds
@@ -18,7 +18,8 @@ makes a kink of the velocity, which the kernel averages), not on normal ones.
 """
 COST = 10
 SHAPES = {"prolate 2": (2.0, (6, 8, 11)), "prolate 3": (3.0, (8, 10, 12)), "oblate 0.3235": (0.3235, (6, 8, 11))}
-BOX, WIDE, CA, RE, TAU, KERNEL = (6, 4, 6), (8, 6, 8), 0.02, 0.1, 3.0, 3
+BOX, WIDER, COARSE = (6, 4, 6), ((8, 6, 8), (12, 8, 12)), 6  # the wider boxes at the radius COARSE
+CA, RE, TAU, KERNEL = 0.02, 0.1, 3.0, 3
 SETTLED = 0.5
 
 
@@ -69,8 +70,8 @@ def scenes():
     todo = {}
     for name, (p, radii) in SHAPES.items():
         todo |= {(name, radius): spheroid(p, radius) for radius in radii}
-        todo[name, "box"] = spheroid(p, radii[0], box=WIDE)
-        todo[name, "stiff"] = spheroid(p, radii[0], ca=CA / 2)
+        todo |= {(name, box): spheroid(p, COARSE, box=box) for box in (BOX, *WIDER)}
+        todo[name, "stiff"] = spheroid(p, COARSE, ca=CA / 2)
     return todo
 
 
@@ -81,19 +82,21 @@ def effective_aspect(period):
 
 
 def in_infinite_box(results, name):
-    """Factor that takes a period to an infinite box. Walls and images act with (r/L)^3: with 1/volume for boxes of similar shape."""
-    small, wide = (period(results[name, key])[0] for key in (SHAPES[name][1][0], "box"))
-    return 1 + (wide / small - 1) * np.prod(WIDE) / (np.prod(WIDE) - np.prod(BOX))
+    """Factor that takes a period to an infinite box, and its error. Walls and images act with (r/L)^3: with 1/volume for boxes of similar shape."""
+    boxes = (BOX, *WIDER)
+    periods = [period(results[name, box])[0] for box in boxes]
+    limit, change = to_zero([1 / np.prod(box, dtype=float) for box in boxes], periods, (1, 5 / 3))
+    return limit / periods[0], change / periods[0]
 
 
 def rows(run):
     results = run.all(scenes())
     out = []
     for name, (p, radii) in SHAPES.items():
-        box = in_infinite_box(results, name)
+        box, box_error = in_infinite_box(results, name)
         periods = [period(results[name, radius])[0] * box for radius in radii]
         limit, error, observed = resolved(radii, periods)
-        stiffer = period(results[name, "stiff"])[0] / period(results[name, radii[0]])[0] - 1
+        stiffer = period(results[name, "stiff"])[0] / period(results[name, BOX])[0] - 1
         d = section(results[name, radii[-1]].cells("gyration")[:, 0])[0]
         re = [results[name, radius].lattice["reynolds_number"] for radius in radii]
         out.append(
@@ -104,11 +107,12 @@ def rows(run):
                 jeffery(p),
                 "Jeffery 1922",
                 0.03,
-                "3 %: 1 % each of the extrapolation in r (the raw deviation is 2 % at the largest r), of the box (corrected by 2 to 3 %), and of softness and "
+                "3 %: 1 % each of the extrapolation in r (the raw deviation is 2 % at the largest r), of the box (corrected by 2 to 5 %), and of softness and "
                 "inertia (halving both changes the period by less than 0.5 %)",
-                error=error,
+                error=np.hypot(error, box_error * limit),
                 settings=f"r {radii}: {', '.join(f'{value:.2f}' for value in periods)}, those of aspect ratios "
-                f"{', '.join(f'{effective_aspect(value):.2f}' for value in periods)} ({max(p, 1 / p):.2f}); order {observed:.1f}; box {100 * (box - 1):+.1f} %; "
+                f"{', '.join(f'{effective_aspect(value):.2f}' for value in periods)} ({max(p, 1 / p):.2f}); order {observed:.1f}; "
+                f"box {100 * (box - 1):+.1f} %; "
                 f"Ca_G and Re halved {100 * stiffer:+.1f} %; Re {re[0]:.3f} to {re[-1]:.3f}; D {d.min():.3f} to {d.max():.3f}, at rest {d[0]:.3f}",
                 seconds=seconds([result for key, result in results.items() if key[0] == name]),
             )
