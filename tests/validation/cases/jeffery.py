@@ -18,7 +18,7 @@ makes a kink of the velocity, which the kernel averages), not on normal ones.
 """
 COST = 10
 SHAPES = {"prolate 2": (2.0, (6, 8, 11)), "prolate 3": (3.0, (8, 10, 12)), "oblate 0.3235": (0.3235, (6, 8, 11))}
-BOX, WIDER, COARSE = (6, 4, 6), ((8, 6, 8), (12, 8, 12)), 6  # the wider boxes at the radius COARSE
+BOX, WIDER = (6, 4, 6), ((8, 6, 8), (12, 8, 12))  # the wider boxes at the smallest radius
 CA, RE, TAU, KERNEL = 0.02, 0.1, 3.0, 3
 SETTLED = 0.5
 
@@ -70,8 +70,8 @@ def scenes():
     todo = {}
     for name, (p, radii) in SHAPES.items():
         todo |= {(name, radius): spheroid(p, radius) for radius in radii}
-        todo |= {(name, box): spheroid(p, COARSE, box=box) for box in (BOX, *WIDER)}
-        todo[name, "stiff"] = spheroid(p, COARSE, ca=CA / 2)
+        todo |= {(name, box): spheroid(p, radii[0], box=box) for box in (BOX, *WIDER)}
+        todo[name, "stiff"] = spheroid(p, radii[0], ca=CA / 2)
     return todo
 
 
