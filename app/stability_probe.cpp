@@ -89,6 +89,7 @@ Prober::Built Prober::build(const ProbeScene& scene) {
   p.accuracy.precision = scene.precision;
   p.accuracy.collision = scene.collision;
   p.accuracy.allow_unstable = true;
+  p.accuracy.shell_thickness = 0.3;  // one for all kernels: they share a packing, so that only the kernel differs
   p.accuracy.subdivision = std::max(2, int(std::lround(scene.radius / scene.edge)));
   p.box.size = {4, 4, 4};
   p.cells.emplace_back().name = "red_cell";

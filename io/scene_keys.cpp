@@ -76,7 +76,7 @@ const Key table[] = {
     {"accuracy.relaxation_time", CORPUSCLE_FIELD(P.accuracy.relaxation_time), between(0.505, 5), "", "time steps", "", "τ; viscosity η₀ = (τ − 1/2)/3"},
     {"accuracy.precision", CORPUSCLE_FIELD(P.accuracy.precision), any, "single|double", "", "preset", "Of populations, force and velocity fields"},
     {"accuracy.membrane_precision", CORPUSCLE_FIELD(P.accuracy.membrane_precision), any, "single|double", "", "", "Of membrane forces (positions are always double)"},
-    {"accuracy.vertex_update", CORPUSCLE_FIELD(P.accuracy.vertex_update), any, "averaged|chebyshev|euler", "", "", "Vertices move with the mean velocity of two steps, or of the last one: euler is unstable for stiff membranes with 2 and 3 points"},
+    {"accuracy.vertex_update", CORPUSCLE_FIELD(P.accuracy.vertex_update), any, "averaged|chebyshev|euler", "", "", "Vertices move with a mean velocity of three steps; chebyshev: and stiff membranes relax within the step, for low Ca; euler: with the velocity of the last step"},
     {"accuracy.mach_max", CORPUSCLE_FIELD(P.accuracy.mach_max), positive(0.3), "", "", "", "Largest imposed velocity / speed of sound does not exceed this"},
     {"accuracy.shell_thickness", CORPUSCLE_FIELD(P.accuracy.shell_thickness), between(0, 2), "", "lattice units", "measured for the kernel",
      "By how much a cell is hydrodynamically larger than its mesh, for φ_eff and `cell_size`"},

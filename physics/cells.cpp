@@ -1,5 +1,8 @@
 #include "physics/cells.hpp"
 
+#include <stdexcept>
+#include <string>
+
 #include "physics/hydrodynamic_size.hpp"
 
 namespace corpuscle {
@@ -29,6 +32,8 @@ Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) 
     cell_count_ += type.count;
     vertex_count_ += type.count * type.vertices();
   }
+  if (positions.size() != 3 * std::size_t(vertex_count_))
+    throw std::invalid_argument("Cells: " + std::to_string(positions.size()) + " coordinates for " + std::to_string(vertex_count_) + " vertices");
   positions_ = VertexVectors("positions", vertex_count_);
   velocities_ = VertexVectors("velocities", vertex_count_);
   forces_ = VertexVectors("forces", vertex_count_);

@@ -29,6 +29,7 @@ std::vector<CellType> make_cell_types(const Problem& problem, const LatticeParam
 /// State of all vertices, [V][3] each, ordered by type, cell, vertex. Lattice units, positions unwrapped.
 class Cells {
  public:
+  /// @throws std::invalid_argument when the positions are not those of all vertices
   Cells(std::vector<CellType> types, const std::vector<double>& positions);
 
   const std::vector<CellType>& types() const { return types_; }

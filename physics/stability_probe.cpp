@@ -101,6 +101,7 @@ StabilityVerdict probe_at_rest(const Problem& problem, const LatticeParameters& 
 StabilityVerdict probe_in_flow(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const std::vector<double>& positions,
                                const ProbeLength& length) {
   const auto suspension = make_suspension(problem, lattice, types, positions);
+  suspension->settle();  // as runs do: the packed state knows nothing of these moduli
   const std::int64_t window = std::max<std::int64_t>(16, length.steps / length.windows);
   const double unit = lattice.shear_rate * lattice.radius;
   StabilityVerdict verdict;

@@ -35,7 +35,7 @@ StabilityVerdict at_rest(int delta_kernel, VertexUpdate update, double shear) {
 
 }  // namespace
 
-TEST_CASE("Euler steps feed the staggered momentum, the faster the stiffer the membrane; the mean of two steps doesn't", "[stability]") {
+TEST_CASE("Euler steps feed the staggered momentum, the faster the stiffer the membrane; the mean doesn't", "[stability]") {
   // docs/theory/model.md: x, m ~ lambda^t with lambda = -1 - s^2 k/2: the rate of the fastest mode is proportional to k. In the last half of 3000 steps, one to a few e-foldings, it is
   // not alone yet: slower modes pull the measured rate down by up to a third, more so for the softer membrane.
   const auto soft = at_rest(2, VertexUpdate::euler, 0.1), stiff = at_rest(2, VertexUpdate::euler, 0.3);
