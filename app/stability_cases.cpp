@@ -177,7 +177,7 @@ void fluid(List& list) {
     }
     ProbeScene s = soft_in_flow(3, 0);
     s.collision = collision;
-    auto& c = list.add("tau", "", s, LimitSearch{100, 1, 1e4, 1.15}, [](ProbeScene& at, double v) {
+    auto& c = list.add("tau", "", s, LimitSearch{50, 1, 200, 1.15}, [](ProbeScene& at, double v) {
       at.relaxation_time = 0.5 + 1 / v;
       at.set_red_cell(1);
       AccuracySpec accuracy;  // the default volume force of such a scene

@@ -53,10 +53,15 @@ constexpr double response_in_flow = 1.17, response_at_small_tau = 0.58;
 constexpr double response_tried = 100;
 
 /// Limit of a red cell's membrane (kappa_int = kappa_S) at phi_eff = 0.2, 0.66, 0.88, relative to 0.45; measured for 3 points averaged (2 points: the same assumed) and for 4
-/// points. In the fullest boxes wide kernels of neighbouring membranes overlap: the limit of Euler steps is 0.55 eta_0 there.
+/// points. In the fullest boxes wide kernels of neighbouring membranes overlap: the limit of Euler steps is 0.55 eta_0 there. Chebyshev steps:
+/// the lower of 3 and 4 points; 5.7 eta_0 at 0.88, hardly above averaged steps.
 double fraction_factor(const AccuracySpec& accuracy, double phi_effective) {
-  constexpr double phi[] = {0.2, 0.45, 0.66, 0.88}, narrow[] = {1.19, 1, 0.84, 0.54}, wide[] = {1.29, 1, 0.77, 0.50}, wide_euler[] = {1.19, 1, 0.77, 0.044};
-  const double* factor = accuracy.delta_kernel != 4 ? narrow : accuracy.vertex_update == VertexUpdate::euler ? wide_euler : wide;
+  constexpr double phi[] = {0.2, 0.45, 0.66, 0.88}, narrow[] = {1.19, 1, 0.84, 0.54}, wide[] = {1.29, 1, 0.77, 0.50};
+  constexpr double wide_euler[] = {1.19, 1, 0.77, 0.044}, chebyshev[] = {1, 1, 0.25, 0.074};
+  const double* factor = accuracy.vertex_update == VertexUpdate::chebyshev ? chebyshev
+                         : accuracy.delta_kernel != 4                      ? narrow
+                         : accuracy.vertex_update == VertexUpdate::euler   ? wide_euler
+                                                                           : wide;
   if (phi_effective <= phi[0]) return factor[0];
   for (int i = 1; i < 4; ++i)
     if (phi_effective <= phi[i]) return factor[i - 1] + (factor[i] - factor[i - 1]) * (phi_effective - phi[i - 1]) / (phi[i] - phi[i - 1]);
@@ -68,8 +73,8 @@ constexpr double small_eta = 0.1, reference_eta = 0.5, large_eta = 1.5;
 
 double power_law(double x, double x0, double y0, double x1, double y1) { return y0 * std::pow(y1 / y0, std::log(x / x0) / std::log(x1 / x0)); }
 
-/// Below tau = 0.6 the limit over eta_0 falls with (tau - 1/2)^1.4: kappa_S = eta_0 is stable down to tau = 0.537 (3 points).
-constexpr double small_tau_exponent = 1.4;
+/// Below tau = 0.6 the limit over eta_0 falls with (tau - 1/2)^0.9: kappa_S = eta_0 is stable down to tau = 0.511 (3 points, TRT; BGK: beyond).
+constexpr double small_tau_exponent = 0.9;
 
 /// Between the measured relaxation times the limits over eta_0 change by powers of eta_0; above they are constant in lattice units: there inertia sets the limit, not viscosity.
 double tau_factor(const Row& row, double relaxation_time) {
