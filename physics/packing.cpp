@@ -7,7 +7,6 @@
 #include "core/error.hpp"
 #include "physics/contact.hpp"
 #include "physics/membrane.hpp"
-#include "physics/overlap.hpp"
 #include "physics/placement.hpp"
 
 namespace corpuscle {
@@ -82,16 +81,6 @@ struct Grow {
       for (int k = 0; k < 3; ++k) x(v, k) = c[k] + factor * (x(v, k) - c[k]);
   }
 };
-
-OverlapReport overlap_of(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const std::vector<double>& x) {
-  CellGeometry geometry;
-  for (int k = 0; k < 3; ++k) geometry.box[k] = lattice.nodes[k];
-  geometry.walls_z = problem.box.walls;
-  for (const auto& type : types)
-    for (int c = 0; c < type.count; ++c)
-      geometry.cells.push_back({&x[3 * (std::size_t(type.first_vertex) + std::size_t(c) * type.vertices())], type.vertices(), &type.reference.faces});
-  return check_overlap(geometry);
-}
 
 [[noreturn]] void does_not_fit(const LatticeParameters& lattice, const std::string& why) {
   throw InputError("The cells could not be packed: " + why + " at volume fraction " + std::to_string(lattice.phi_geometric) + " (effective " +
@@ -248,6 +237,16 @@ std::vector<double> place_cells(const Problem& problem, const LatticeParameters&
     does_not_fit(lattice, what);
   }
   return positions;
+}
+
+OverlapReport overlap_of(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const std::vector<double>& positions) {
+  CellGeometry geometry;
+  for (int k = 0; k < 3; ++k) geometry.box[k] = lattice.nodes[k];
+  geometry.walls_z = problem.box.walls;
+  for (const auto& type : types)
+    for (int c = 0; c < type.count; ++c)
+      geometry.cells.push_back({&positions[3 * (std::size_t(type.first_vertex) + std::size_t(c) * type.vertices())], type.vertices(), &type.reference.faces});
+  return check_overlap(geometry);
 }
 
 bool packs_cells(const Problem& problem, const std::vector<CellType>& types) {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "physics/cells.hpp"
+#include "physics/overlap.hpp"
 #include "physics/problem.hpp"
 
 namespace corpuscle {
@@ -16,6 +17,9 @@ using PackingProgress = std::function<bool(double scale, double gap, int rounds)
 /// @throws InputError when the cells do not fit (names the volume fraction and what to change).
 std::vector<double> place_cells(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types,
                                 const PackingProgress& progress = {});
+
+/// Which cells pierce each other or a wall at these positions.
+OverlapReport overlap_of(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const std::vector<double>& positions);
 
 /// Whether `place_cells` packs: more than one cell, and none has a position in the scene. The suspension should settle such a start.
 bool packs_cells(const Problem& problem, const std::vector<CellType>& types);

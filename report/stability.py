@@ -79,7 +79,8 @@ def draw_points(axes, cases, abscissa, update):
     for kernel in sorted({c["delta_kernel"] for c in cases}):
         points = sorted((c[abscissa], c["stable"]) for c in cases if c["delta_kernel"] == kernel and c["stable"])
         if points:
-            axes.plot(*zip(*points), color=COLOURS[kernel], marker=MARKERS[kernel], linewidth=1.4, label=f"{kernel} points, {update}", linestyle="-" if update == "averaged" else "--")
+            axes.plot(*zip(*points), color=COLOURS[kernel], marker=MARKERS[kernel], linewidth=1.4, label=f"{kernel} points, {update}",
+                      linestyle={"averaged": "-", "chebyshev": "--"}.get(update, ":"))
 
 
 def plot(cases, path):
@@ -115,9 +116,9 @@ def plot(cases, path):
         ax.set_axisbelow(True)
         if ax.get_yscale() == "log":
             low, high = ax.get_ylim()
-            ax.set_ylim(10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(high)))
+            ax.set_ylim(10 ** np.floor(np.log10(low) - 1), 10 ** np.ceil(np.log10(high)))  # room for the legend
         if ax.get_legend_handles_labels()[0]:
-            ax.legend(frameon=False, fontsize=8.5, ncols=2 if ax is axes[0, 0] or ax is axes[0, 1] else 1, loc="lower left" if ax is axes[0, 0] or ax is axes[0, 1] else "best")
+            ax.legend(frameon=False, fontsize=8.5 if ax is axes[1, 0] else 7.2, columnspacing=1.2, ncols=1 if ax is axes[1, 0] else 3, loc="best" if ax is axes[1, 0] else "lower left")
     figure.savefig(path)
 
 

@@ -4,7 +4,6 @@
 
 #include "io/scene.hpp"
 #include "physics/mesh.hpp"
-#include "physics/overlap.hpp"
 #include "physics/packing.hpp"
 #include "physics/suspension.hpp"
 #include "tests/catch.hpp"
@@ -36,16 +35,7 @@ struct Extreme {
   }
   Sample run_strain(double strain) { return run(std::llround(strain * lattice.steps_per_strain)); }
 
-  bool cells_overlap() const {
-    const auto x = suspension->snapshot(false).positions;
-    CellGeometry geometry;
-    for (int k = 0; k < 3; ++k) geometry.box[k] = lattice.nodes[k];
-    geometry.walls_z = problem.box.walls;
-    for (const auto& type : types)
-      for (int c = 0; c < type.count; ++c)
-        geometry.cells.push_back({&x[3 * (std::size_t(type.first_vertex) + std::size_t(c) * type.vertices())], type.vertices(), &type.reference.faces});
-    return !check_overlap(geometry).is_clean();
-  }
+  bool cells_overlap() const { return !overlap_of(problem, lattice, types, suspension->snapshot(false).positions).is_clean(); }
 
   /// Sharpest fold between two triangles of any cell, as the cosine of the angle between their normals: -1 where one lies on the other, turned over.
   double sharpest_fold() const {
