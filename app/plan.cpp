@@ -50,9 +50,7 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
   j["contact_strength"] = l.contact_strength;
   j["contact_range"] = l.contact_range;
   j["membrane_time"] = l.membrane_time;
-  if (l.si.length) j["unit_length_m"] = *l.si.length;
-  if (l.si.force) j["unit_force_N"] = *l.si.force;
-  if (l.si.time) j["unit_time_s"] = *l.si.time;
+  for (const auto& [name, unit] : named_units(l.si)) j[name] = unit;
   j["steps"] = l.steps;
   j["steps_per_strain"] = l.steps_per_strain;
   j["series_every_steps"] = l.series_every;

@@ -59,7 +59,6 @@ Json search(const StabilityCase& c, Prober& prober) {
   row["unit"] = c.unit;
   row["scene"] = c.scene.kind == ProbeScene::Kind::at_rest ? "at rest" : c.scene.kind == ProbeScene::Kind::in_flow ? "in flow" : "fluid alone";
   row["delta_kernel"] = c.scene.delta_kernel;
-  row["vertex_update"] = int(c.scene.update);
   row["relaxation_time"] = c.scene.relaxation_time;
   row["edge"] = c.scene.edge;
   row["radius"] = c.scene.radius;

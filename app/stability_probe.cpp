@@ -23,7 +23,7 @@ StabilityVerdict probe_fluid(const ProbeScene& scene) {
   parameters.nodes = {16, 16, 16};
   parameters.collision = scene.collision;
   parameters.relaxation_time = scene.relaxation_time;
-  const double wall = scene.mach / std::sqrt(3.0);
+  const double wall = scene.mach * speed_of_sound;
   parameters.wall_velocity = {-wall, wall};
   Fluid<double> fluid(parameters);
   RandomStream random(1);
@@ -61,6 +61,19 @@ std::vector<double> pack(Problem problem, const LatticeParameters& lattice, cons
       if (problem.run.seed == 8) throw;
     }
   }
+}
+
+/// The moduli of the probe in place of those that the scene would choose.
+void set_moduli(LatticeParameters& lattice, const ProbeScene& scene) {
+  const double eta = lattice.viscosity;
+  auto& cell = lattice.cells[0];
+  cell.moduli.shear = scene.shear * eta;
+  cell.moduli.area_dilation = scene.dilation * eta;
+  cell.moduli.bending = scene.bending * eta;
+  cell.moduli.global_area = area_modulus(cell, scene.area);
+  cell.moduli.volume = volume_modulus(cell, scene.volume);
+  lattice.contact_strength = scene.contact * eta;
+  lattice.contact_range = 1;
 }
 
 }  // namespace
@@ -106,20 +119,9 @@ Prober::Built Prober::build(const ProbeScene& scene) {
   }
   Built built{p, to_lattice(p), {}, {}};
   auto& lattice = built.lattice;
-  auto& cell = lattice.cells[0];
-  const double eta = lattice.viscosity;
-  double shear = scene.shear * eta, dilation = scene.dilation * eta, bending = scene.bending * eta, contact = scene.contact * eta;
-  if (scene.capillary_number > 0) {
-    shear = eta * lattice.shear_rate * lattice.radius / scene.capillary_number;
-    dilation = 2.5 * shear, bending = shear * lattice.radius * lattice.radius / 405, contact = shear;
-  }
-  cell.moduli.shear = shear;
-  cell.moduli.area_dilation = dilation;
-  cell.moduli.bending = bending;
-  cell.moduli.global_area = area_modulus(cell, scene.area);
-  cell.moduli.volume = volume_modulus(cell, scene.volume);
-  lattice.contact_strength = contact;
-  lattice.contact_range = 1;
+  ProbeScene moduli = scene;
+  if (scene.capillary_number > 0) moduli.set_red_cell(lattice.shear_rate * lattice.radius / scene.capillary_number);
+  set_moduli(lattice, moduli);
   built.types = make_cell_types(p, lattice);
   if (!flow) {
     // Off the nodes and off their axes, so that no symmetry hides a mode.
@@ -135,13 +137,11 @@ Prober::Built Prober::build(const ProbeScene& scene) {
     soft.accuracy.vertex_update = VertexUpdate::averaged;
     soft.accuracy.relaxation_time = 1;
     LatticeParameters l = to_lattice(soft);
-    auto& m = l.cells[0].moduli;
-    m.shear = 0.1 * l.viscosity;
-    m.area_dilation = 0.25 * l.viscosity;
-    m.bending = m.shear * l.radius * l.radius / 405;
-    m.global_area = area_modulus(l.cells[0], 0.25);
-    l.contact_strength = m.shear;
-    l.contact_range = 1;
+    ProbeScene moduli = scene;
+    moduli.set_red_cell(0.1);
+    moduli.area = ProbeScene{}.area;
+    moduli.volume = ProbeScene{}.volume;
+    set_moduli(l, moduli);
     const auto types = make_cell_types(soft, l);
     const auto suspension = make_suspension(soft, l, types, pack(soft, l, types));
     for (int step = 0; step < 500; ++step) suspension->step();

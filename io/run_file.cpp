@@ -138,9 +138,7 @@ void write_lattice(hdf5::File& file, const LatticeParameters& lattice) {
   number("contact_strength", lattice.contact_strength);
   number("contact_range", lattice.contact_range);
   number("membrane_time", lattice.membrane_time);
-  if (lattice.si.length) number("unit_length_m", *lattice.si.length);
-  if (lattice.si.force) number("unit_force_N", *lattice.si.force);
-  if (lattice.si.time) number("unit_time_s", *lattice.si.time);
+  for (const auto& [name, unit] : named_units(lattice.si)) number(name, unit);
   number("steps_per_strain", lattice.steps_per_strain);
   integer("steps", lattice.steps);
   integer("series_every", lattice.series_every);

@@ -152,9 +152,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
     json["intrinsic_viscosity_error"] = summary.intrinsic_viscosity_error;
     json["area_ratio"] = summary.area_ratio;
   }
-  if (summary.si.length) json["unit_length_m"] = *summary.si.length;
-  if (summary.si.force) json["unit_force_N"] = *summary.si.force;
-  if (summary.si.time) json["unit_time_s"] = *summary.si.time;
+  for (const auto& [name, unit] : named_units(summary.si)) json[name] = unit;
   json["wall_seconds"] = summary.wall_seconds;
   json["mlups"] = summary.mlups;
   json["threads"] = summary.threads;

@@ -34,21 +34,14 @@ Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) 
   }
   if (positions.size() != 3 * std::size_t(vertex_count_))
     throw std::invalid_argument("Cells: " + std::to_string(positions.size()) + " coordinates for " + std::to_string(vertex_count_) + " vertices");
-  positions_ = VertexVectors("positions", vertex_count_);
+  positions_ = to_device(positions, "positions");
   velocities_ = VertexVectors("velocities", vertex_count_);
   forces_ = VertexVectors("forces", vertex_count_);
   cell_of_vertex_ = Array1<int>("cell_of_vertex", vertex_count_);
-  Kokkos::deep_copy(positions_, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(positions.data(), vertex_count_));
   const auto cell_of = Kokkos::create_mirror_view(cell_of_vertex_);
   for (const auto& type : types_)
     for (int i = 0; i < type.count * type.vertices(); ++i) cell_of(type.first_vertex + i) = type.first_cell + i / type.vertices();
   Kokkos::deep_copy(cell_of_vertex_, cell_of);
-}
-
-std::vector<double> Cells::to_host(const VertexVectors& vectors) {
-  std::vector<double> host(vectors.extent(0) * 3);
-  Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)), vectors);
-  return host;
 }
 
 }  // namespace corpuscle

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "core/vertex_vectors.hpp"
 #include "physics/mesh.hpp"
 #include "physics/units.hpp"
 
@@ -45,7 +46,6 @@ class Cells {
   std::size_t bytes() const { return 3 * positions_.span() * sizeof(double) + cell_of_vertex_.span() * sizeof(int); }
 
  private:
-  static std::vector<double> to_host(const VertexVectors& vectors);
   std::vector<CellType> types_;
   int cell_count_ = 0, vertex_count_ = 0;
   VertexVectors positions_, velocities_, forces_;

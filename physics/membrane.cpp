@@ -17,20 +17,11 @@ class MembraneOf final : public Membrane {
       : reference_(reference), ring_(one_ring(reference)) {
     const int vertices = int(reference.vertices.size()), faces = int(reference.faces.size());
     auto& t = block_.tables;
-    t.degree = Array1<int>("membrane_degree", vertices);
-    t.neighbour = Array2<int>("membrane_neighbour", vertices, ring_.max_degree);
-    t.opposite = Array2<int>("membrane_opposite", vertices, ring_.max_degree);
+    t.degree = degrees_on_device(ring_, "membrane_degree");
+    t.neighbour = ring_on_device(ring_, ring_.neighbour, "membrane_neighbour");
+    t.opposite = ring_on_device(ring_, ring_.opposite, "membrane_opposite");
     t.reference = decltype(t.reference)("membrane_reference", vertices, ring_.max_degree);
     t.faces = faces_on_device(reference);
-    copy(t.degree, ring_.degree.data(), vertices);
-    const auto neighbour = Kokkos::create_mirror_view(t.neighbour), opposite = Kokkos::create_mirror_view(t.opposite);
-    for (int v = 0; v < vertices; ++v)
-      for (int i = 0; i < ring_.degree[v]; ++i) {
-        neighbour(v, i) = ring_.neighbour[v * ring_.max_degree + i];
-        opposite(v, i) = ring_.opposite[v * ring_.max_degree + i];
-      }
-    Kokkos::deep_copy(t.neighbour, neighbour);
-    Kokkos::deep_copy(t.opposite, opposite);
 
     block_.law = law;
     bending_stiffness_ = 2 * moduli.bending_constant * moduli.bending;
@@ -92,9 +83,6 @@ class MembraneOf final : public Membrane {
   }
 
  private:
-  static void copy(const Array1<int>& to, const int* from, int count) {
-    Kokkos::deep_copy(to, Kokkos::View<const int*, Kokkos::LayoutRight, Kokkos::HostSpace>(from, count));
-  }
   Mesh reference_;
   OneRing ring_;
   double bending_stiffness_ = 0;

@@ -12,4 +12,12 @@ SiUnits si_units(const SiSpec& si, double radius, double kappa, double viscosity
   return units;
 }
 
+std::vector<std::pair<const char*, double>> named_units(const SiUnits& units) {
+  std::vector<std::pair<const char*, double>> named;
+  if (units.length) named.emplace_back("unit_length_m", *units.length);
+  if (units.force) named.emplace_back("unit_force_N", *units.force);
+  if (units.time) named.emplace_back("unit_time_s", *units.time);
+  return named;
+}
+
 }  // namespace corpuscle

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/random.hpp"
+#include "core/vertex_vectors.hpp"
 #include "physics/coupling.hpp"
 #include "physics/membrane.hpp"
 #include "physics/suspension.hpp"
@@ -10,16 +11,6 @@
 namespace corpuscle {
 namespace {
 
-VertexVectors to_device(const std::vector<double>& host) {
-  VertexVectors vectors("vectors", host.size() / 3);
-  Kokkos::deep_copy(vectors, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), host.size() / 3));
-  return vectors;
-}
-std::vector<double> to_host(const VertexVectors& vectors) {
-  std::vector<double> host(vectors.extent(0) * 3);
-  Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)), vectors);
-  return host;
-}
 double norm(const std::vector<double>& v) {
   double sum = 0;
   for (const double x : v) sum += x * x;

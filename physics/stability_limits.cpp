@@ -11,8 +11,6 @@
 namespace corpuscle {
 namespace {
 
-const double speed_of_sound = 1 / std::sqrt(3.0);
-
 /// Measured in flow at phi_eff = 0.45, r = 5, edge 1, tau = 1: the largest stable values of `corpuscle stability` (docs/stability.md), and what the limit of a red cell's
 /// membrane is at tau = 0.6 and 2, relative to tau = 1. Bending was measured in flow with 3 points; with 2 and 4 it is the limit at rest times the same ratio, 0.6.
 struct Row {
@@ -139,6 +137,11 @@ double mean_edge(const Mesh& mesh) {
   return sum / double(edges.size());
 }
 
+void refuse_unstable(const Problem& problem, LatticeParameters& lattice, const std::string& message) {
+  if (!problem.accuracy.allow_unstable) throw InputError(message);
+  lattice.warnings.push_back(message + " (accepted, because accuracy.allow_unstable = true)");
+}
+
 void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
   const StiffnessLimits limits = stiffness_limits(problem.accuracy, lattice.phi_effective);
   const double eta = lattice.viscosity;
@@ -153,8 +156,7 @@ void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
     if (lattice.mach_number > limit * (1 + 1e-8)) {
       const std::string message = fmt::format("accuracy.mach_max = {} is unstable with accuracy.relaxation_time = {}: it must be <= {:.3g}; or raise the relaxation time",
                                               problem.accuracy.mach_max, lattice.relaxation_time, 0.999 * limit);
-      if (!problem.accuracy.allow_unstable) throw InputError(message);
-      lattice.warnings.push_back(message + " (accepted, because accuracy.allow_unstable = true)");
+      refuse_unstable(problem, lattice, message);
     }
   }
   for (std::size_t i = 0; i < lattice.cells.size(); ++i) {

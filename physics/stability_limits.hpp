@@ -42,6 +42,9 @@ double area_modulus(const CellTypeLattice& cell, double response);
 double squared_curvature(const Mesh& mesh);
 double mean_edge(const Mesh& mesh);
 
+/// What is unstable is refused, or warned of where the scene insists (accuracy.allow_unstable). @throws InputError with the message.
+void refuse_unstable(const Problem& problem, LatticeParameters& lattice, const std::string& message);
+
 /// Where a scene stands against all limits, and a warning for each that it comes close to. Needs the moduli and the flow.
 /// @throws InputError when the fluid alone is unstable at this Mach number (the moduli were checked when the shear rate was chosen).
 void set_stability_margins(const Problem& problem, LatticeParameters& lattice);

@@ -60,6 +60,26 @@ double late_slope(const std::vector<double>& values) {
   return n > 1 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : 0;
 }
 
+/// The jitter of each window over `unit`, until `clear` says that the verdict is; fills steps, jitter and growth rate of the verdict. Empty when a guard tripped: that is the verdict.
+template <class Clear>
+std::vector<double> watch(Suspension& suspension, const ProbeLength& length, double unit, StabilityVerdict& verdict, const Clear& clear) {
+  const std::int64_t window = std::max<std::int64_t>(16, length.steps / length.windows);
+  std::vector<double> jitter;
+  try {
+    for (int w = 0; w < length.windows; ++w) {
+      jitter.push_back(jitter_over(suspension, window) / unit);
+      verdict.steps += window;
+      if (clear(jitter)) break;
+    }
+  } catch (const SimulationError&) {
+    verdict.reason = "a vertex is too fast or not a number";
+    return {};
+  }
+  verdict.jitter = jitter.back();
+  verdict.growth_rate = late_slope(jitter) / double(window);
+  return jitter;
+}
+
 }  // namespace
 
 void displace(std::vector<double>& positions, double length, std::uint64_t seed) {
@@ -72,21 +92,9 @@ StabilityVerdict probe_at_rest(const Problem& problem, const LatticeParameters& 
   displace(positions, displacement, 1);
   const auto suspension = make_suspension(problem, lattice, types, positions);
   const double energy = elastic_energy(types[0], positions);
-  const std::int64_t window = std::max<std::int64_t>(16, length.steps / length.windows);
   StabilityVerdict verdict;
-  std::vector<double> jitter;
-  try {
-    for (int w = 0; w < length.windows; ++w) {
-      jitter.push_back(jitter_over(*suspension, window));
-      verdict.steps += window;
-      if (jitter[w] > hopeless * jitter[0] || jitter[w] < quiet * jitter[0]) break;
-    }
-  } catch (const SimulationError&) {
-    verdict.reason = "a vertex is too fast or not a number";
-    return verdict;
-  }
-  verdict.jitter = jitter.back();
-  verdict.growth_rate = late_slope(jitter) / double(window);
+  const auto jitter = watch(*suspension, length, 1, verdict, [](const std::vector<double>& j) { return j.back() > hopeless * j[0] || j.back() < quiet * j[0]; });
+  if (jitter.empty()) return verdict;
   const double ratio = elastic_energy(types[0], suspension->snapshot(false).positions) / energy;
   const bool decayed = jitter.back() < quiet * jitter[0];
   if (!decayed && (verdict.growth_rate > slowest_growth || jitter.back() > hopeless * jitter[0])) verdict.reason = "velocity noise grows";
@@ -102,22 +110,10 @@ StabilityVerdict probe_in_flow(const Problem& problem, const LatticeParameters& 
                                const ProbeLength& length) {
   const auto suspension = make_suspension(problem, lattice, types, positions);
   suspension->settle();  // as runs do: the packed state knows nothing of these moduli
-  const std::int64_t window = std::max<std::int64_t>(16, length.steps / length.windows);
-  const double unit = lattice.shear_rate * lattice.radius;
   StabilityVerdict verdict;
-  std::vector<double> jitter;
-  try {
-    for (int w = 0; w < length.windows; ++w) {
-      jitter.push_back(jitter_over(*suspension, window) / unit);
-      verdict.steps += window;
-      if (w > 0 && jitter[w] > 3 * drowned) break;
-    }
-  } catch (const SimulationError&) {
-    verdict.reason = "a vertex is too fast or not a number";
-    return verdict;
-  }
-  verdict.jitter = jitter.back();
-  verdict.growth_rate = late_slope(jitter) / double(window);
+  const auto jitter = watch(*suspension, length, lattice.shear_rate * lattice.radius, verdict,
+                            [](const std::vector<double>& j) { return j.size() > 1 && j.back() > 3 * drowned; });
+  if (jitter.empty()) return verdict;
   const double growth = verdict.growth_rate * double(verdict.steps) / 2;
   if (jitter.back() > drowned) verdict.reason = "velocity noise above the shear velocity";
   else if (jitter.back() > suspicious && growth > chance) verdict.reason = "velocity noise grows";

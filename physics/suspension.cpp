@@ -46,13 +46,12 @@ class SuspensionOf final : public Suspension {
     if (problem.contact.enabled)
       contact_ = std::make_unique<Contact>(box, ContactParameters{lattice.contact_strength, lattice.contact_range}, cells_->cell_of_vertex());
     if (Stretching::needed(problem)) stretching_ = std::make_unique<Stretching>(problem, lattice, cells_->types());
-    mobility_ = mobility_model(cells_->types(), problem.accuracy.delta_kernel);
-    motion_ = std::make_unique<VertexMotion>(cells_->types(), problem.accuracy.vertex_update, mobility_);
+    motion_ = std::make_unique<VertexMotion>(cells_->types(), problem.accuracy.vertex_update, mobility());
   }
 
   void settle() override {
     constexpr int rounds = 40;
-    if (cells_) corpuscle::settle(cells_->types(), mobility_, rounds, cells_->positions(), cells_->forces(), force_operator());
+    if (cells_) corpuscle::settle(cells_->types(), mobility(), rounds, cells_->positions(), cells_->forces(), force_operator());
   }
 
   void step() override { step_with(nullptr); }
@@ -89,22 +88,23 @@ class SuspensionOf final : public Suspension {
   }
 
  private:
+  /// All forces on the vertices. With a sampler the stresses are measured on the way: external forces are no part of the particle stress.
+  void compute_forces(const VertexVectors& positions, const VertexVectors& forces, CellSampler* sampler = nullptr) {
+    for (const auto& membrane : membranes_) membrane->compute_forces(positions, forces);
+    if (sampler) sampler->measure_membrane_stress(*cells_);
+    if (contact_) contact_->add_forces(positions, forces);
+    if (sampler && contact_) sampler->measure_contact_stress(*cells_, *contact_);
+    if (stretching_) stretching_->add_forces(forces);
+  }
+  MobilityModel mobility() const { return mobility_model(cells_->types(), problem_.accuracy.delta_kernel); }
   ForceOperator force_operator() {
-    return [this](const VertexVectors& positions, const VertexVectors& forces) {
-      for (const auto& membrane : membranes_) membrane->compute_forces(positions, forces);
-      if (contact_) contact_->add_forces(positions, forces);
-      if (stretching_) stretching_->add_forces(forces);
-    };
+    return [this](const VertexVectors& positions, const VertexVectors& forces) { compute_forces(positions, forces); };
   }
 
   /// The time step. With a sample, each quantity is measured at the moment when it is known, at time t = step.
   void step_with(Sample* sample) {
     if (cells_) {
-      for (const auto& membrane : membranes_) membrane->compute_forces(cells_->positions(), cells_->forces());
-      if (sample) sampler_->measure_membrane_stress(*cells_);
-      if (contact_) contact_->add_forces(cells_->positions(), cells_->forces());
-      if (sample && contact_) sampler_->measure_contact_stress(*cells_, *contact_);
-      if (stretching_) stretching_->add_forces(cells_->forces());  // external: no part of the particle stress
+      compute_forces(cells_->positions(), cells_->forces(), sample ? sampler_.get() : nullptr);
       coupling_->spread(cells_->positions(), cells_->forces(), fluid_.force());
       if (sample && problem_.box.walls) spread_on_walls_ = fluid_.wall_force_from_spreading();
       fluid_.scatter_force();
@@ -157,7 +157,6 @@ class SuspensionOf final : public Suspension {
   std::unique_ptr<Contact> contact_;
   std::unique_ptr<Stretching> stretching_;
   std::unique_ptr<VertexMotion> motion_;
-  MobilityModel mobility_{};
   std::array<double, 2> spread_on_walls_{};
 };
 

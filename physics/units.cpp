@@ -17,7 +17,6 @@ namespace corpuscle {
 
 namespace {
 
-const double speed_of_sound = 1 / std::sqrt(3.0);
 constexpr double tolerance = 1e-8;         // limits are met to rounding: 1.2/6 isn't 0.2 in binary
 constexpr double stiffness_at_rest = 0.25; // kappa_S / eta_0 where no flow sets it: soft, and well inside the limit
 constexpr double penalty = 6;              // kappa_A / eta_0: 1 at tau = 1 (docs/theory/model.md, typical values)
@@ -182,12 +181,6 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     throw InputError(fmt::format("the cells have {:.3g} vertices in all, but at most {} are supported: lower the number of cells or accuracy.subdivision", vertices,
                                  std::numeric_limits<std::int32_t>::max()));
   }
-}
-
-/// What is unstable is refused, or warned of where the scene insists (accuracy.allow_unstable).
-void refuse_unstable(const Problem& problem, LatticeParameters& lattice, const std::string& message) {
-  if (!problem.accuracy.allow_unstable) throw InputError(message);
-  lattice.warnings.push_back(message + " (accepted, because accuracy.allow_unstable = true)");
 }
 
 /// Chooses kappa_S and the shear rate together: the capillary number ties one to the other, every limit bounds both. By default stability is used up to `stability_margin`;

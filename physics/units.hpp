@@ -1,6 +1,7 @@
 // From dimensionless numbers to lattice parameters (docs/theory/model.md, "Units and dimensionless numbers").
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "physics/si_units.hpp"
 
 namespace corpuscle {
+
+/// c_s of the lattice, 1/sqrt(3).
+inline const double speed_of_sound = 1 / std::sqrt(3.0);
 
 /// Elastic moduli of one cell type in lattice units.
 struct MembraneModuli {

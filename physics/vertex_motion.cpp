@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "core/random.hpp"
+#include "physics/mesh_device.hpp"
+
 namespace corpuscle {
 namespace {
 
@@ -52,20 +55,15 @@ void mobility_velocities(const std::vector<SurfaceMobility>& mobilities, const V
 /// Numbers in [-1, 1] without pattern, the same at every call: an estimate needs no state that a restart would have to keep.
 void fill_noise(const VertexVectors& a) {
   Kokkos::parallel_for("vertex_motion_noise", Range(0, a.extent(0)), KOKKOS_LAMBDA(const int v) {
-    for (int k = 0; k < 3; ++k) {
-      std::uint64_t h = (3 * std::uint64_t(v) + k + 1) * 0x9E3779B97F4A7C15ull;
-      h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9ull;
-      h = (h ^ (h >> 27)) * 0x94D049BB133111EBull;
-      a(v, k) = double(h >> 11) * (2.0 / 9007199254740992.0) - 1.0;
-    }
+    for (int k = 0; k < 3; ++k) a(v, k) = 2 * uniform_from_bits(mix_bits((3 * std::uint64_t(v) + k + 1) * 0x9e3779b97f4a7c15ULL)) - 1;
   });
 }
 
 /// Largest eigenvalue of -M dF/dx, M the mobility, by power iteration with finite differences. The largest component as norm: it doesn't depend on the order of summation.
-double largest_rate(const std::vector<SurfaceMobility>& mobilities, const VertexVectors& x, const VertexVectors& force, const VertexVectors& direction, const VertexVectors& displaced, const VertexVectors& response,
-                         const ForceOperator& compute_forces) {
+double largest_rate(const std::vector<SurfaceMobility>& mobilities, const VertexVectors& x, const VertexVectors& force, const VertexVectors& direction,
+                    const VertexVectors& displaced, const VertexVectors& response, const ForceOperator& compute_forces) {
   fill_noise(direction);
-  double stiffness = 0, length = 1;
+  double rate = 0, length = 1;
   for (int i = 0; i < power_iterations; ++i) {
     const double scale = probe / length;
     Kokkos::parallel_for("vertex_motion_displace", Range(0, x.extent(0)), KOKKOS_LAMBDA(const int v) {
@@ -74,20 +72,18 @@ double largest_rate(const std::vector<SurfaceMobility>& mobilities, const Vertex
     compute_forces(displaced, response);
     mobility_velocities(mobilities, force, response, displaced, direction);
     length = largest_component(direction);
-    stiffness = std::max(stiffness, length / probe);
+    rate = std::max(rate, length / probe);
     if (!(length > 0)) break;
   }
-  return stiffness;
+  return rate;
 }
 
-int stages_for_rate(double eigenvalue) {
-  return std::min(most_stages, ChebyshevScheme::stages_for(std::min(margin * eigenvalue, ChebyshevScheme::reach(most_stages))));
-}
+/// The stages that a rate asks for.
+ChebyshevScheme scheme_for(double rate) { return ChebyshevScheme(ChebyshevScheme::stages_for(std::min(margin * rate, ChebyshevScheme::reach(most_stages)))); }
 
 /// Stages of dx/ds = drift + M (F(x) - F0). `force` is scratch.
-void chebyshev_stages(int stages, const std::vector<SurfaceMobility>& mobilities, const VertexVectors& x, const VertexVectors& force, const VertexVectors& drift,
+void chebyshev_stages(const ChebyshevScheme& scheme, const std::vector<SurfaceMobility>& mobilities, const VertexVectors& x, const VertexVectors& force, const VertexVectors& drift,
                       const VertexVectors& start_force, const VertexVectors& last, const VertexVectors& smoothed, const ForceOperator& compute_forces) {
-  const ChebyshevScheme scheme(stages);
   const double first = scheme.first;
   Kokkos::parallel_for("chebyshev_first", Range(0, x.extent(0)), KOKKOS_LAMBDA(const int v) {
     for (int k = 0; k < 3; ++k) {
@@ -121,16 +117,8 @@ SurfaceMobility surface_mobility(const CellType& type, const MobilityModel& mode
   m.first_vertex = type.first_vertex;
   m.count = type.count;
   m.vertices = type.vertices();
-  m.degree = Array1<int>("mobility_degree", m.vertices);
-  m.neighbour = Array2<int>("mobility_neighbour", m.vertices, ring.max_degree);
-  const auto degree = Kokkos::create_mirror_view(m.degree);
-  const auto neighbour = Kokkos::create_mirror_view(m.neighbour);
-  for (int v = 0; v < m.vertices; ++v) {
-    degree(v) = ring.degree[v];
-    for (int i = 0; i < ring.degree[v]; ++i) neighbour(v, i) = ring.neighbour[v * ring.max_degree + i];
-  }
-  Kokkos::deep_copy(m.degree, degree);
-  Kokkos::deep_copy(m.neighbour, neighbour);
+  m.degree = degrees_on_device(ring, "mobility_degree");
+  m.neighbour = ring_on_device(ring, ring.neighbour, "mobility_neighbour");
   return m;
 }
 
@@ -179,7 +167,7 @@ void VertexMotion::advance(const VertexVectors& positions, const VertexVectors& 
   }
   const auto u1 = before_, u2 = before_that_;
   const bool relaxes = update_ == VertexUpdate::chebyshev;
-  if (relaxes && steps_ % estimate_every == 0) stages_ = stages_for_rate(largest_rate(mobilities_, x, f, drift_, last_, start_forces_, compute_forces));
+  if (relaxes && steps_ % estimate_every == 0) scheme_ = scheme_for(largest_rate(mobilities_, x, f, drift_, last_, start_forces_, compute_forces));
   const auto w = drift_, f0 = start_forces_;
   Kokkos::parallel_for("advance", all, KOKKOS_LAMBDA(const int v) {
     for (int k = 0; k < 3; ++k) {
@@ -194,7 +182,7 @@ void VertexMotion::advance(const VertexVectors& positions, const VertexVectors& 
       }
     }
   });
-  if (relaxes) chebyshev_stages(stages_, mobilities_, x, f, w, f0, last_, smoothed_, compute_forces);
+  if (relaxes) chebyshev_stages(scheme_, mobilities_, x, f, w, f0, last_, smoothed_, compute_forces);
   ++steps_;
 }
 
@@ -205,13 +193,13 @@ void settle(const std::vector<CellType>& types, const MobilityModel& mobility, i
   const auto x = positions, f = forces;
   const auto last = vectors("settle_last", n), velocity = vectors("settle_velocity", n), start = vectors("settle_forces", n), smoothed = vectors("settle_smoothed", n);
   const VertexVectors none("settle_none", n);
-  int stages = 1;
+  ChebyshevScheme scheme(1);
   for (int i = 0; i < rounds; ++i) {
     compute_forces(x, f);
-    if (i % 8 == 0) stages = stages_for_rate(largest_rate(mobilities, x, f, velocity, last, start, compute_forces));
+    if (i % 8 == 0) scheme = scheme_for(largest_rate(mobilities, x, f, velocity, last, start, compute_forces));
     mobility_velocities(mobilities, f, none, smoothed, velocity);
     Kokkos::deep_copy(start, f);
-    chebyshev_stages(stages, mobilities, x, f, velocity, start, last, smoothed, compute_forces);  // M F(0) + M [F(s) - F(0)] = M F(s)
+    chebyshev_stages(scheme, mobilities, x, f, velocity, start, last, smoothed, compute_forces);  // M F(0) + M [F(s) - F(0)] = M F(s)
   }
 }
 

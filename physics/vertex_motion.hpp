@@ -37,7 +37,7 @@ class VertexMotion {
   void advance(const VertexVectors& positions, const VertexVectors& velocities, const VertexVectors& forces, const ForceOperator& compute_forces);
 
   /// Chebyshev stages of the last step; 1 for the other updates.
-  int stages() const { return stages_; }
+  int stages() const { return 1 + int(scheme_.stages.size()); }
   std::size_t bytes() const { return (before_.span() + before_that_.span() + drift_.span() + start_forces_.span() + last_.span() + smoothed_.span()) * sizeof(double); }
   /// What `bytes` will be.
   static std::size_t bytes_per_vertex(VertexUpdate update);
@@ -45,7 +45,7 @@ class VertexMotion {
  private:
   VertexUpdate update_;
   std::vector<SurfaceMobility> mobilities_;      // chebyshev, one a type
-  int stages_ = 1;
+  ChebyshevScheme scheme_{1};                    // chebyshev, of the last estimate of the stiffness
   long steps_ = 0;
   VertexVectors before_, before_that_;           // u(t-1), u(t-2)
   VertexVectors drift_, start_forces_, last_, smoothed_;  // chebyshev: w, F(x(0)), the stage before the present one

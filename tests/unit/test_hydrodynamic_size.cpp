@@ -8,7 +8,9 @@
 #include "core/error.hpp"
 #include "io/scene.hpp"
 #include "physics/cells.hpp"
+#include "physics/placement.hpp"
 #include "tests/catch.hpp"
+#include "tests/refusal.hpp"
 #include "tests/scratch.hpp"
 
 using namespace corpuscle;
@@ -19,23 +21,6 @@ constexpr double pi = std::numbers::pi;
 
 Problem scene(const std::string& cell, const std::string& accuracy) {
   return parse_scene("[box]\nsize = [10, 10, 10]\n[flow]\ncapillary_number = 0.05\n[accuracy]\n" + accuracy + "\n[[cells]]\n" + cell + "\n", "scene.toml");
-}
-
-std::string refusal(const Problem& problem) {
-  try {
-    to_lattice(problem);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-double bounding_radius_of(const Mesh& mesh) {
-  double largest = 0;
-  for (const Vector3& x : mesh.vertices) largest = std::max(largest, x.norm());
-  return largest;
 }
 
 }  // namespace
@@ -121,7 +106,7 @@ TEST_CASE("Meshes of other shapes lie a shell inside the nominal surface", "[siz
     CHECK(cell.volume < cell.nominal_volume);
     CHECK(cell.effective_radius == Approx(10));
     const Mesh mesh = make_cell_types(problem, to_lattice(problem))[0].reference;
-    CHECK(bounding_radius_of(mesh) == Approx(cell.mesh_radius).epsilon(0.005));
+    CHECK(bounding_radius(mesh) == Approx(cell.mesh_radius).epsilon(0.005));
   }
 }
 
@@ -138,8 +123,8 @@ TEST_CASE("The thinnest part of a mesh", "[size]") {
 TEST_CASE("A shell too thick for the cell is refused, with the radius that would do", "[size]") {
   const std::string corrected = "cell_size = 'hydrodynamic'\n";
   const std::string message = refusal(scene("count = 1", corrected + "radius = 5"));
-  CHECK(contains(message, "cells.0: accuracy.cell_size = \"hydrodynamic\""));
-  CHECK(contains(message, "thinnest part is 1.03"));
+  CHECK(mentions(message, "cells.0: accuracy.cell_size = \"hydrodynamic\""));
+  CHECK(mentions(message, "thinnest part is 1.03"));
   const double offered = std::stod(message.substr(message.find("accuracy.radius >= ") + 19));
   CHECK(refusal(scene("count = 1", corrected + "radius = " + std::to_string(offered))) == "accepted");
   CHECK(refusal(scene("count = 1", corrected + "radius = 5\nshell_thickness = 0.3")) == "accepted");
@@ -155,7 +140,7 @@ TEST_CASE("A shell too thick for the cell is refused, with the radius that would
   off.close();
   const std::string lens = "file = '" + (folder / "lens.off").string() + "'\ncount = 1";
   CHECK(refusal(scene(lens, "radius = 8")) == "accepted");
-  CHECK(contains(refusal(scene(lens, corrected + "radius = 8")), "hydrodynamic"));
+  CHECK(mentions(refusal(scene(lens, corrected + "radius = 8")), "hydrodynamic"));
 }
 
 TEST_CASE("cell_size is a key with two values, and a shell survives the merged scene", "[size]") {

@@ -6,6 +6,7 @@
 #include "physics/stability_limits.hpp"
 #include "physics/units.hpp"
 #include "tests/catch.hpp"
+#include "tests/refusal.hpp"
 
 using namespace corpuscle;
 
@@ -34,15 +35,6 @@ const Column columns[] = {
     {4.2e-5, 0.056e-4, 0.2, 178571, 0.0005e-4},
 };
 
-std::string refusal(const Problem& problem) {
-  try {
-    to_lattice(problem);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 /// Largest share of the stable range that a membrane of the scene uses.
 double largest_load(const Problem& problem, const LatticeParameters& lattice) {
   double largest = 0;
@@ -51,8 +43,6 @@ double largest_load(const Problem& problem, const LatticeParameters& lattice) {
                                                cell.moduli.bending / lattice.viscosity));
   return largest;
 }
-
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

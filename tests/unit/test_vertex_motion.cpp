@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/vertex_vectors.hpp"
 #include "physics/membrane.hpp"
 #include "tests/catch.hpp"
 
@@ -20,16 +21,6 @@ std::vector<CellType> one_sphere(double shear) {
   return {type};
 }
 
-VertexVectors from_host(const std::vector<double>& values) {
-  VertexVectors v("test_vectors", values.size() / 3);
-  Kokkos::deep_copy(v, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(values.data(), values.size() / 3));
-  return v;
-}
-std::vector<double> to_host(const VertexVectors& v) {
-  std::vector<double> values(v.extent(0) * 3);
-  Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(values.data(), v.extent(0)), v);
-  return values;
-}
 std::vector<double> vertices_of(const Mesh& mesh) {
   std::vector<double> x;
   for (const auto& p : mesh.vertices) x.insert(x.end(), {p.x(), p.y(), p.z()});
@@ -42,9 +33,9 @@ double carried(VertexUpdate update, int steps, const Velocity& velocity) {
   const auto types = one_sphere(0);
   VertexMotion motion(types, update, {1, 0.6});
   const auto start = vertices_of(types[0].reference);
-  const auto x = from_host(start), f = from_host(std::vector<double>(start.size()));
+  const auto x = to_device(start), f = to_device(std::vector<double>(start.size()));
   const ForceOperator none = [](const VertexVectors&, const VertexVectors& forces) { Kokkos::deep_copy(forces, 0.0); };
-  for (int t = 0; t < steps; ++t) motion.advance(x, from_host(std::vector<double>(start.size(), velocity(t))), f, none);
+  for (int t = 0; t < steps; ++t) motion.advance(x, to_device(std::vector<double>(start.size(), velocity(t))), f, none);
   return to_host(x)[7] - start[7];
 }
 
@@ -87,7 +78,7 @@ TEST_CASE("A stiff membrane turns and moves with the fluid as if it were soft", 
   const Stiff sphere(20.0);
   VertexMotion motion(sphere.types, VertexUpdate::chebyshev, {3, 0.6});
   const auto start = vertices_of(sphere.types[0].reference);
-  const auto x = from_host(start), f = from_host(std::vector<double>(start.size()));
+  const auto x = to_device(start), f = to_device(std::vector<double>(start.size()));
   const double angle = 1e-4, steps = 20;
   for (int t = 0; t < steps; ++t) {
     sphere.membrane->compute_forces(x, f);
@@ -96,7 +87,7 @@ TEST_CASE("A stiff membrane turns and moves with the fluid as if it were soft", 
       const double ux = -angle * u[i + 1], uy = angle * u[i];
       u[i] = ux, u[i + 1] = uy, u[i + 2] = 1e-3;
     }
-    motion.advance(x, from_host(u), f, sphere.force());
+    motion.advance(x, to_device(u), f, sphere.force());
   }
   CHECK(motion.stages() > 5);
   const auto end = to_host(x);
@@ -115,8 +106,8 @@ TEST_CASE("Stages grow with the square root of the stiffness, and any stiffness 
   for (int i = 0; i < 2; ++i) {
     const Stiff sphere(i == 0 ? 4.0 : 64.0);
     VertexMotion motion(sphere.types, VertexUpdate::chebyshev, {3, 0.6});
-    const auto x = from_host(sphere.dented());
-    const auto f = from_host(std::vector<double>(x.extent(0) * 3)), rest = from_host(std::vector<double>(x.extent(0) * 3));
+    const auto x = to_device(sphere.dented());
+    const auto f = to_device(std::vector<double>(x.extent(0) * 3)), rest = to_device(std::vector<double>(x.extent(0) * 3));
     sphere.membrane->compute_forces(x, f);
     motion.advance(x, rest, f, sphere.force());
     stages[i] = motion.stages();
@@ -133,8 +124,8 @@ TEST_CASE("Nothing moves where the fluid rests, however stiff the membrane is", 
   const Stiff sphere(10.0);
   VertexMotion motion(sphere.types, VertexUpdate::chebyshev, {3, 0.6});
   const auto start = sphere.dented();
-  const auto x = from_host(start);
-  const auto f = from_host(std::vector<double>(start.size())), rest = from_host(std::vector<double>(start.size()));
+  const auto x = to_device(start);
+  const auto f = to_device(std::vector<double>(start.size())), rest = to_device(std::vector<double>(start.size()));
   for (int t = 0; t < 5; ++t) {
     sphere.membrane->compute_forces(x, f);
     motion.advance(x, rest, f, sphere.force());

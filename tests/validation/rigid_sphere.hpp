@@ -157,7 +157,7 @@ inline Result measure(const Setup& s) {
     coupling.interpolate(x, u, fluid.velocity());
     Kokkos::deep_copy(uh, u);
     for (int v = 0; v < n; ++v) {
-      const Vector3 now(uh(v, 0), uh(v, 1), uh(v, 2)), mean = 0.5 * (now + before[v]);  // blind to staggered momenta, as Cells::advance
+      const Vector3 now(uh(v, 0), uh(v, 1), uh(v, 2)), mean = 0.5 * (now + before[v]);  // blind to staggered momenta
       if (s.hold == Hold::rigid) lag[v] += target[v] - mean;
       if (membrane)
         for (int k = 0; k < 3; ++k) xh(v, k) += mean[k];

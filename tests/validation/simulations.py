@@ -37,6 +37,11 @@ def scene(cells=(), **sections):
     return "\n".join(lines)
 
 
+def stokes_accuracy(radius, kernel, tau, **others):
+    """[accuracy] of a case in creeping flow: TRT, whose stationary flow does not depend on tau, so that a large tau saves steps."""
+    return {"radius": radius, "delta_kernel": kernel, "collision": "trt", "relaxation_time": tau, "precision": "single", "mach_max": 0.3} | others
+
+
 class Result:
     """What one run wrote (docs/outputs.md)."""
 

@@ -5,7 +5,7 @@ import numpy as np
 from analysis import resolved, section, to_zero
 from plots import BLUE, COLOURS, INK, MARKERS, ORANGE, panels, save
 from rows import Row
-from simulations import scene, seconds, steady_mean
+from simulations import scene, seconds, steady_mean, stokes_accuracy
 
 TITLE = "Spherical capsules in shear"
 ABOUT = """
@@ -63,7 +63,7 @@ def capsule(law, ca, radius, kernel, box=BOX, re=RE, tau=TAU, precision="single"
         flow={"capillary_number_G": ca, "reynolds_number_max": re},
         cells=[{"shape": "sphere", "count": 1, "position": [box / 2 + moved / radius] * 3, "membrane": LAWS[law] | {"bending": bending}}],
         contact={"enabled": False},
-        accuracy={"radius": radius, "delta_kernel": kernel, "collision": "trt", "relaxation_time": tau, "precision": precision, "mach_max": 0.3},
+        accuracy=stokes_accuracy(radius, kernel, tau, precision=precision),
         run={"strain": settled(ca) + 1},
         output={"series_every": 0.02, "snapshot_every": 0},
     )
@@ -89,7 +89,7 @@ def scenes():
     for kernel in KERNELS:
         for radius in RADII[kernel]:
             for law, ca in BOUNDARY_ELEMENTS:
-                # At Re = 0.1 the stiffest membrane would need kappa_S = 1.2 eta_0 at r = 5, where the 2-point kernel was found unstable.
+                # At Re = 0.1 the stiffest membrane would need kappa_S = 1.2 eta_0 at r = 5: close to what 2 points hold stable at tau = 3.
                 re = RE / 2 if kernel == 2 and radius == COARSE and ca < 0.05 else RE
                 bending = BENDING if kernel == 2 and ca < 0.05 else 0.0
                 todo[law, ca, kernel, radius] = capsule(law, ca, radius, kernel, re=re, bending=bending)

@@ -4,7 +4,7 @@ import numpy as np
 
 from analysis import block_error
 from rows import Row
-from simulations import scene, seconds
+from simulations import scene, seconds, stokes_accuracy
 
 TITLE = "Suspensions of capsules: dilute limit and the two measurements of stress"
 ABOUT = """
@@ -25,7 +25,7 @@ def suspension(phi, seed=1):
         box={"size": list(BOX)},
         flow={"capillary_number_G": CA, "reynolds_number_max": RE},
         cells=[cells],
-        accuracy={"radius": RADIUS, "delta_kernel": 3, "collision": "trt", "relaxation_time": TAU, "precision": "single", "mach_max": 0.3},
+        accuracy=stokes_accuracy(RADIUS, 3, TAU),
         run={"strain": STRAIN if phi else 2 * SETTLED, "seed": seed},
         output={"series_every": 0.05, "snapshot_every": 0},
     )

@@ -6,7 +6,7 @@ import stiff_sphere
 from analysis import section, to_zero, unwrapped
 from plots import BLUE, GREEN, INK, panels, save
 from rows import Row
-from simulations import scene, seconds
+from simulations import scene, seconds, stokes_accuracy
 
 TITLE = "Jeffery orbits of stiff spheroids"
 ABOUT = """
@@ -45,15 +45,7 @@ def spheroid(p, radius, ca, box=BOX):
             }
         ],
         contact={"enabled": False},
-        accuracy={
-            "radius": radius,
-            "delta_kernel": KERNEL,
-            "collision": "trt",
-            "relaxation_time": TAU,
-            "precision": "single",
-            "mach_max": 0.3,
-            "shear_modulus": stiff_sphere.MODULUS,
-        },
+        accuracy=stokes_accuracy(radius, KERNEL, TAU, shear_modulus=stiff_sphere.MODULUS),
         run={"strain": round(jeffery(p) / 2 + 1.5, 1)},
         output={"series_every": 0.02, "snapshot_every": 0},
     )

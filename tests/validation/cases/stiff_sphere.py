@@ -5,7 +5,7 @@ import numpy as np
 from analysis import resolved, rotation_vector, section, to_zero
 from plots import COLOURS, INK, MARKERS, panels, save
 from rows import Row
-from simulations import scene, seconds, steady_mean
+from simulations import scene, seconds, steady_mean, stokes_accuracy
 
 TITLE = "Stiff sphere: rotation and Einstein's viscosity"
 ABOUT = """
@@ -15,7 +15,7 @@ in D. The coupling kernel makes the sphere hydrodynamically larger than its mesh
 """
 COST = 4
 RADII, KERNELS, BOX, BOXES, CA, RE, TAU = (5, 7, 10), (3, 4, 2), 6, (8, 12), 0.02, 0.1, 3.0
-MODULUS = 0.5  # kappa_S = 0.6 eta_0: with the 2-point kernel 1.2 eta_0, the program's own limit, was unstable at r = 10
+MODULUS = 0.5  # kappa_S = 0.6 eta_0: with the 2-point kernel 1.2 eta_0 was unstable at r = 10
 SETTLED, STRAIN = 1.0, 2.5
 
 
@@ -30,15 +30,7 @@ def sphere(radius, kernel, box=BOX, ca=CA):
         flow={"capillary_number_G": ca, "reynolds_number_max": RE},
         cells=[{"shape": "sphere", "count": 1, "position": [box / 2] * 3, "membrane": stiff_membrane(radius)}],
         contact={"enabled": False},
-        accuracy={
-            "radius": radius,
-            "delta_kernel": kernel,
-            "collision": "trt",
-            "relaxation_time": TAU,
-            "precision": "single",
-            "mach_max": 0.3,
-            "shear_modulus": MODULUS,
-        },
+        accuracy=stokes_accuracy(radius, kernel, TAU, shear_modulus=MODULUS),
         run={"strain": STRAIN},
         output={"series_every": 0.02, "snapshot_every": 0.5},
     )

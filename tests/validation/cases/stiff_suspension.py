@@ -6,7 +6,7 @@ import stiff_sphere
 from analysis import block_error
 from plots import BLUE, GREEN, INK, ORANGE, panels, save
 from rows import Row
-from simulations import scene
+from simulations import scene, stokes_accuracy
 
 TITLE = "Suspensions of stiff spheres"
 ABOUT = """
@@ -25,15 +25,7 @@ def suspension(phi_h):
         box={"size": list(BOX)},
         flow={"capillary_number_G": CA, "reynolds_number_max": 0.1},
         cells=[{"shape": "sphere", "volume_fraction": round(phi_h * 2.5 / ASSUMED, 4), "membrane": membrane}],
-        accuracy={
-            "radius": RADIUS,
-            "delta_kernel": KERNEL,
-            "collision": "trt",
-            "relaxation_time": TAU,
-            "precision": "single",
-            "mach_max": 0.3,
-            "shear_modulus": 0.8,
-        },
+        accuracy=stokes_accuracy(RADIUS, KERNEL, TAU, shear_modulus=0.8),
         run={"strain": STRAIN},
         output={"series_every": 0.05, "snapshot_every": 0},
     )

@@ -1,0 +1,23 @@
+// Vertex vectors to and from plain host arrays.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace corpuscle {
+
+/// [V][3] from 3 V numbers, x y z of one vertex after the other.
+inline VertexVectors to_device(const std::vector<double>& host, const std::string& label = "vertex_vectors") {
+  const VertexVectors vectors(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), host.size() / 3);
+  Kokkos::deep_copy(vectors, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)));
+  return vectors;
+}
+
+inline std::vector<double> to_host(const VertexVectors& vectors) {
+  std::vector<double> host(vectors.extent(0) * 3);
+  Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)), vectors);
+  return host;
+}
+
+}  // namespace corpuscle
