@@ -4,16 +4,9 @@
 #include <string>
 #include <type_traits>
 
+#include "core/flatten.hpp"
 #include "core/grid.hpp"
 #include "core/types.hpp"
-
-// Inlines the whole body of a loop: one call that stays in it would keep it scalar. Not in debug builds, where checks and sanitizers would make
-// the compiler take minutes and gigabytes.
-#ifdef NDEBUG
-#define CORPUSCLE_FLATTEN [[gnu::flatten]]
-#else
-#define CORPUSCLE_FLATTEN
-#endif
 
 namespace corpuscle {
 

@@ -8,49 +8,60 @@ namespace corpuscle {
 /// Maps unwrapped positions into the box.
 struct PeriodicBox {
   double length[3];
-  bool walls;  ///< z is bounded: not wrapped
+  double inverse_length[3];
+  double largest[3];  ///< the largest position inside
+  bool walls;         ///< z is bounded: not wrapped
 
-  explicit PeriodicBox(const Grid& grid, bool walls_in_z) : length{double(grid.nx), double(grid.ny), double(grid.nz)}, walls(walls_in_z) {}
-  PeriodicBox() : length{1, 1, 1}, walls(false) {}
+  PeriodicBox(double length_x, double length_y, double length_z, bool walls_in_z) : length{length_x, length_y, length_z}, walls(walls_in_z) {
+    for (int k = 0; k < 3; ++k) {
+      inverse_length[k] = 1 / length[k];
+      largest[k] = length[k] * (1 - 1e-15);
+    }
+  }
+  explicit PeriodicBox(const Grid& grid, bool walls_in_z) : PeriodicBox(grid.nx, grid.ny, grid.nz, walls_in_z) {}
+  PeriodicBox() : PeriodicBox(1, 1, 1, false) {}
 
-  /// Position inside [0, length) along one axis. Beyond a wall, or not a number: the nearest position inside, so that a vertex gone astray
-  /// never touches memory outside the field (guards report it).
+  /// Position inside [0, length) along one axis. Beyond a wall, or not a number: a position inside, so that a vertex gone astray
+  /// never touches memory outside the field (guards report it). No branch and no division: the loop over vertices vectorises.
   KOKKOS_FORCEINLINE_FUNCTION double inside(const double x, const int axis) const {
-    const double l = length[axis];
-    double wrapped = x;
-    if (!(axis == 2 && walls)) wrapped = x - l * Kokkos::floor(x / l);
-    const double largest = l * (1 - 1e-15);
-    if (!(wrapped >= 0)) return 0;
-    return wrapped < largest ? wrapped : largest;
+    const double turns = axis == 2 && walls ? 0.0 : Kokkos::floor(x * inverse_length[axis]);
+    const double wrapped = x - length[axis] * turns;
+    const double below = wrapped < largest[axis] ? wrapped : largest[axis];
+    return below > 0 ? below : 0;
   }
   /// Minimum image of a difference of positions.
   KOKKOS_FORCEINLINE_FUNCTION double nearest(const double dx, const int axis) const {
     if (axis == 2 && walls) return dx;
-    return dx - length[axis] * Kokkos::round(dx / length[axis]);
+    return dx - length[axis] * Kokkos::round(dx * inverse_length[axis]);
   }
 };
 
 template <class Real, class Delta>
 struct Stencil {
-  int x, y, z;  ///< first node in each direction; may lie in the halo
+  int node;  ///< the first node in each direction; may lie in the halo
   Real wx[Delta::width], wy[Delta::width], wz[Delta::width];
-
-  KOKKOS_FORCEINLINE_FUNCTION Stencil(const PeriodicBox& box, const double px, const double py, const double pz) {
-    const double s[3] = {box.inside(px, 0) - 0.5, box.inside(py, 1) - 0.5, box.inside(pz, 2) - 0.5};
-    const double first[3] = {Delta::first(s[0]), Delta::first(s[1]), Delta::first(s[2])};
-    x = static_cast<int>(first[0]);
-    y = static_cast<int>(first[1]);
-    z = static_cast<int>(first[2]);
-    Delta::weights(static_cast<Real>(s[0] - first[0]), wx);
-    Delta::weights(static_cast<Real>(s[1] - first[1]), wy);
-    Delta::weights(static_cast<Real>(s[2] - first[2]), wz);
-  }
 };
 
-/// First plane that a vertex at height z touches: decides the slab in coloured spreading.
+/// First node that a vertex touches along one axis, as a coordinate (nodes sit at integers + 1/2), and the weights from there on.
+template <class Delta, class Real>
+KOKKOS_FORCEINLINE_FUNCTION int stencil_along(const double inside, Real (&weights)[Delta::width]) {
+  const double first = Delta::first(inside - 0.5);
+  Delta::weights(static_cast<Real>(inside - 0.5 - first), weights);
+  return static_cast<int>(first);
+}
+
+template <class Real, class Delta>
+KOKKOS_FORCEINLINE_FUNCTION Stencil<Real, Delta> stencil_at(const Grid& grid, const PeriodicBox& box, const double x, const double y, const double z) {
+  Stencil<Real, Delta> s;
+  const int i = stencil_along<Delta>(box.inside(x, 0), s.wx), j = stencil_along<Delta>(box.inside(y, 1), s.wy), k = stencil_along<Delta>(box.inside(z, 2), s.wz);
+  s.node = grid.index(i, j, k);
+  return s;
+}
+
+/// First node that a vertex touches along one axis: decides the pencil in coloured spreading.
 template <class Delta>
-KOKKOS_FORCEINLINE_FUNCTION int first_plane(const PeriodicBox& box, const double pz) {
-  return static_cast<int>(Delta::first(box.inside(pz, 2) - 0.5));
+KOKKOS_FORCEINLINE_FUNCTION int first_node(const PeriodicBox& box, const double position, const int axis) {
+  return static_cast<int>(Delta::first(box.inside(position, axis) - 0.5));
 }
 
 }  // namespace corpuscle

@@ -3,6 +3,7 @@
 #include "kernels/delta_kernel.hpp"
 #include "kernels/interpolate.hpp"
 #include "kernels/spread.hpp"
+#include "kernels/stencil_block.hpp"
 
 namespace corpuscle {
 namespace {
@@ -17,29 +18,84 @@ void with_delta(int delta_kernel, const F& f) {
     f(Delta4{});
 }
 
-/// Slab of a vertex: `width` planes thick, so that a vertex touches its own slab and the next one only.
+/// The box cut into pencils along x, so thick that a vertex touches its own pencil and the next ones in y and z only. Hundreds of them where slabs in z
+/// would be a few: threads find work in thin boxes and where cells cluster.
+struct Pencils {
+  int thickness_y, thickness_z, halo, count_y, count_z;
+  // First nodes run from -halo to n - 1 + halo - (width - 1).
+  Pencils(const Grid& grid, int width)
+      : thickness_y(2 * width),
+        thickness_z(width),
+        halo(grid.halo),
+        count_y((grid.ny + 2 * halo) / thickness_y + 1),
+        count_z((grid.nz + 2 * halo) / thickness_z + 1) {}
+  KOKKOS_FORCEINLINE_FUNCTION int of(const int y, const int z) const { return (z + halo) / thickness_z * count_y + (y + halo) / thickness_y; }
+  int count() const { return count_y * count_z; }
+};
+
 template <class Delta>
-struct SlabKeys {
+struct PencilKeys {
   PeriodicBox box;
-  int halo;
+  Pencils pencils;
   VertexVectors positions;
   Array1<int> keys;
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int vertex) const {
-    keys(vertex) = (first_plane<Delta>(box, positions(vertex, 2)) + halo) / Delta::width;
+    keys(vertex) = pencils.of(first_node<Delta>(box, positions(vertex, 1), 1), first_node<Delta>(box, positions(vertex, 2), 2));
   }
 };
 
-/// Spreads all vertices of one slab, in order.
+/// Spreads all vertices of one pencil, in order. Pencils of one colour (even or odd in y, even or odd in z) have no node in common.
 template <class Real, class Delta>
-struct SpreadSlab {
-  Spread<Real, Delta, PlainAdder> spread;
+struct SpreadPencil {
+  Grid grid;
+  PeriodicBox box;
+  Pencils pencils;
+  VertexVectors positions, forces;
+  VectorField<Real> field;
   Array1<int> order, begin;
-  int colour;
-  KOKKOS_FUNCTION void operator()(const int pair) const {
-    const int slab = 2 * pair + colour;
-    const auto local = spread;
-    const int last = begin(slab + 1);
-    for (int i = begin(slab); i < last; ++i) local(order(i));
+  int colour_y, colour_z;
+
+  int of_this_colour_y() const { return (pencils.count_y - colour_y + 1) / 2; }
+  int of_this_colour_z() const { return (pencils.count_z - colour_z + 1) / 2; }
+
+  CORPUSCLE_FLATTEN void operator()(const int i) const {
+    const int per_row = of_this_colour_y();
+    const int pencil = (2 * (i / per_row) + colour_z) * pencils.count_y + 2 * (i % per_row) + colour_y;
+    const Grid local_grid = grid;
+    const double* const force = forces.data();
+    Real* const nodes = field.data();
+    const int last = begin(pencil + 1);
+    StencilBlock<Real, Delta> stencils;
+    for (int first = begin(pencil); first < last; first += stencils.size) {
+      const int* const vertices = order.data() + first;
+      const int count = last - first < stencils.size ? last - first : stencils.size;
+      stencils.template fill<true>(grid, box, positions.data(), count, 0, vertices);
+      for (int k = 0; k < count; ++k) {
+        const double* const f = force + 3 * std::size_t(vertices[k]);
+        spread_vertex<PlainAdder>(stencils[k], Real(f[0]), Real(f[1]), Real(f[2]), local_grid, nodes);
+      }
+    }
+  }
+};
+
+/// Velocities of one block of vertices.
+template <class Real, class Delta>
+struct InterpolateBlock {
+  Grid grid;
+  PeriodicBox box;
+  VertexVectors positions, velocities;
+  VectorField<Real> field;
+  static constexpr int size = StencilBlock<Real, Delta>::size;
+
+  CORPUSCLE_FLATTEN void operator()(const int block) const {
+    const int first = block * size, vertices = int(positions.extent(0));
+    const int count = vertices - first < size ? vertices - first : size;
+    const Grid local_grid = grid;
+    double* const velocity = velocities.data() + 3 * std::size_t(first);
+    const Real* const nodes = field.data();
+    StencilBlock<Real, Delta> stencils;
+    stencils.template fill<false>(grid, box, positions.data(), count, first, nullptr);
+    for (int k = 0; k < count; ++k) interpolate_vertex(stencils[k], local_grid, nodes, velocity + 3 * k);
   }
 };
 
@@ -53,17 +109,16 @@ template <class Real>
 template <class Delta>
 void Coupling<Real>::spread_coloured(const VertexVectors& positions, const VertexVectors& forces, const VectorField<Real>& field) {
   const int vertices = int(positions.extent(0));
-  if (int(keys_.extent(0)) < vertices) keys_ = Array1<int>("slab_keys", vertices);
-  // First planes run from -halo to nz - 1 + halo - (width - 1) < nz + halo.
-  const int slabs = (grid_.nz + 2 * grid_.halo) / Delta::width + 1;
-  Kokkos::parallel_for("spread_keys", Kokkos::RangePolicy<ExecSpace>(0, vertices), SlabKeys<Delta>{box_, grid_.halo, positions, keys_});
-  sort_.sort(keys_, vertices, slabs);
-  const Spread<Real, Delta, PlainAdder> body{grid_, box_, positions, forces, field};
-  for (int colour = 0; colour < 2; ++colour)
-    Kokkos::parallel_for("spread",
-                         Kokkos::RangePolicy<ExecSpace, Kokkos::Schedule<Kokkos::Dynamic>>(0, (slabs - colour + 1) / 2)
-                             .set_chunk_size(1),
-                         SpreadSlab<Real, Delta>{body, sort_.order(), sort_.begin(), colour});
+  if (int(keys_.extent(0)) < vertices) keys_ = Array1<int>("pencil_keys", vertices);
+  const Pencils pencils(grid_, Delta::width);
+  Kokkos::parallel_for("spread_keys", Kokkos::RangePolicy<ExecSpace>(0, vertices), PencilKeys<Delta>{box_, pencils, positions, keys_});
+  sort_.sort(keys_, vertices, pencils.count());
+  for (int colour_z = 0; colour_z < 2; ++colour_z)
+    for (int colour_y = 0; colour_y < 2; ++colour_y) {
+      const SpreadPencil<Real, Delta> body{grid_, box_, pencils, positions, forces, field, sort_.order(), sort_.begin(), colour_y, colour_z};
+      using Policy = Kokkos::RangePolicy<ExecSpace, Kokkos::Schedule<Kokkos::Dynamic>>;
+      Kokkos::parallel_for("spread", Policy(0, body.of_this_colour_y() * body.of_this_colour_z()).set_chunk_size(1), body);
+    }
 }
 
 template <class Real>
@@ -72,16 +127,21 @@ void Coupling<Real>::spread(const VertexVectors& positions, const VertexVectors&
     using Delta = decltype(delta);
     if constexpr (runs_on_host)
       if (mode_ == SpreadMode::coloured) return spread_coloured<Delta>(positions, forces, field);
-    Kokkos::parallel_for("spread", Kokkos::RangePolicy<ExecSpace>(0, positions.extent(0)),
-                         Spread<Real, Delta, AtomicAdder>{grid_, box_, positions, forces, field});
+    Kokkos::parallel_for("spread", Kokkos::RangePolicy<ExecSpace>(0, positions.extent(0)), Spread<Real, Delta>{grid_, box_, positions, forces, field});
   });
 }
 
 template <class Real>
 void Coupling<Real>::interpolate(const VertexVectors& positions, const VertexVectors& velocities, const VectorField<Real>& field) const {
   with_delta(delta_kernel_, [&](auto delta) {
-    Kokkos::parallel_for("interpolate", Kokkos::RangePolicy<ExecSpace>(0, positions.extent(0)),
-                         Interpolate<Real, decltype(delta)>{grid_, box_, positions, velocities, field});
+    using Delta = decltype(delta);
+    const int vertices = int(positions.extent(0));
+    if constexpr (runs_on_host) {
+      const InterpolateBlock<Real, Delta> body{grid_, box_, positions, velocities, field};
+      Kokkos::parallel_for("interpolate", Kokkos::RangePolicy<ExecSpace>(0, (vertices + body.size - 1) / body.size), body);
+    } else {
+      Kokkos::parallel_for("interpolate", Kokkos::RangePolicy<ExecSpace>(0, vertices), Interpolate<Real, Delta>{grid_, box_, positions, velocities, field});
+    }
   });
 }
 

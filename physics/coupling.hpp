@@ -8,7 +8,7 @@ namespace corpuscle {
 
 /// How `spread` avoids that two threads add to the same node.
 enum class SpreadMode {
-  coloured,  ///< host: slabs in z, every second one at a time; the sum is the same for any number of threads
+  coloured,  ///< host: pencils along x in four colours, one colour at a time; the sum is the same for any number of threads
   atomic     ///< devices
 };
 

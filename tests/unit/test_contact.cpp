@@ -36,9 +36,7 @@ TEST_CASE("Contact forces equal the sum over all pairs, in boxes of any size", "
   };
   for (const Box& b : {Box{{8, 9, 10}, 400}, Box{{2, 3, 12}, 100}, Box{{1.7, 20, 3.3}, 120}, Box{{4, 4, 2}, 60}})
     for (const bool walls : {false, true}) {
-      Grid grid{int(b.length[0]), int(b.length[1]), int(b.length[2]), 1};
-      PeriodicBox box(grid, walls);
-      for (int k = 0; k < 3; ++k) box.length[k] = b.length[k];
+      const PeriodicBox box(b.length[0], b.length[1], b.length[2], walls);
       const auto s = scatter(b.count, b.length, 7, 3);
       const double range = 0.8;
       Contact contact(box, {0.3, range, 0.05}, s.cell);
