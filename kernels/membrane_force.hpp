@@ -1,29 +1,24 @@
-// Force of the membrane on one vertex: F = - dE/dx, gathered over its one-ring (no scatter, no atomics).
+// Forces of a membrane, F = - dE/dx: per triangle (strain, global area and volume) and per edge (bending), added to the vertices by an adder.
 #pragma once
 #include "core/types.hpp"
 #include "kernels/vec3.hpp"
 
 namespace corpuscle {
 
-/// Topology and reference state of a cell type, shared by all of its cells. Row v belongs to the vertex v, column i to the triangle
-/// (v, n_i, n_{i+1}) and to the edges (v, n_i) and (n_i, n_{i+1}).
+/// Topology and reference state of a cell type, shared by all of its cells. An edge p -> q has the tips `left` and `right` of its two triangles.
 template <class Real>
 struct MembraneTables {
-  Array1<int> degree;                                                  ///< [V]
-  Array2<int> neighbour;                                               ///< [V][max_degree] n_i, counter-clockwise from outside
-  Array2<int> opposite;                                                ///< [V][max_degree] vertex beyond the edge (n_i, n_{i+1})
-  Kokkos::View<Real** [9], Kokkos::LayoutRight, MemSpace> reference;   ///< [V][max_degree][9], see the enum
-  Kokkos::View<int* [3], Kokkos::LayoutRight, MemSpace> faces;         ///< [F][3]
-  enum Reference {
-    gram_inverse_11,  ///< inverse Gram matrix of the undeformed edges n_i - v, n_{i+1} - v
+  Kokkos::View<int* [3], Kokkos::LayoutRight, MemSpace> faces;                ///< [F][3]
+  Kokkos::View<Real* [5], Kokkos::LayoutRight, MemSpace> face_reference;      ///< [F][5], see FaceReference
+  Kokkos::View<int* [4], Kokkos::LayoutRight, MemSpace> edges;                ///< [E][4]: p, q, left, right; empty without bending
+  Kokkos::View<Real* [2], Kokkos::LayoutRight, MemSpace> edge_reference;      ///< [E][2]: cosine and sine of the reference angle
+  enum FaceReference {
+    gram_inverse_11,  ///< inverse Gram matrix of the undeformed edges b - a, c - a
     gram_inverse_12,
     gram_inverse_22,
     gram_determinant_inverse,
     area,             ///< undeformed area of the triangle
-    cos_spoke,        ///< reference angle at the edge (v, n_i)
-    sin_spoke,
-    cos_rim,          ///< reference angle at the edge (n_i, n_{i+1})
-    sin_rim
+    face_values
   };
 };
 
@@ -34,77 +29,67 @@ struct Tension {
   T volume;  ///< kappa_V (V - V0)/V0
 };
 
-/// Bending moment of an edge between unnormalised normals n_left and n_right: dE/dtheta = 2 p kappa_B (theta - theta_0). `reach` is the vector from the
-/// edge to the tip of the right triangle; theta > 0 where the surface is convex.
-template <class T>
-KOKKOS_FORCEINLINE_FUNCTION T bending_moment(const Vec3<T>& n_left, const Vec3<T>& n_right, const Vec3<T>& reach, const T& length, const T& cos_0,
-                                             const T& sin_0, const T& stiffness) {
-  const T c = dot(n_left, n_right);
-  const T s = -length * dot(n_left, reach);
-  return stiffness * angle_of(s * cos_0 - c * sin_0, c * cos_0 + s * sin_0);
+/// Forces of one triangle on its three vertices. `position(v)` returns a vertex as Vec3<T>, `add(v, force)` adds to one; T is Real on devices and a
+/// SIMD pack over cells of the same type on hosts.
+template <class Real, class T, class Law, bool needs_global, class Position, class Add>
+KOKKOS_FORCEINLINE_FUNCTION void triangle_forces(const MembraneTables<Real>& tables, const Law& law, const Tension<T>& tension, const int face, const Position& position,
+                                                 const Add& add) {
+  using Tables = MembraneTables<Real>;
+  const int a = tables.faces(face, 0), b = tables.faces(face, 1), c = tables.faces(face, 2);
+  const Vec3<T> origin = position(a);
+  const Vec3<T> edge_b = position(b) - origin, edge_c = position(c) - origin;
+  const auto reference = [&](int k) { return T(tables.face_reference(face, k)); };
+
+  // In-plane strain from the Gram matrix g of the deformed edges: I1 = G^-1 : g - 2, I2 = det g / det G - 1.
+  const T g11 = dot(edge_b, edge_b), g12 = dot(edge_b, edge_c), g22 = dot(edge_c, edge_c);
+  const T h11 = reference(Tables::gram_inverse_11), h12 = reference(Tables::gram_inverse_12), h22 = reference(Tables::gram_inverse_22);
+  const Vec3<T> normal = cross(edge_b, edge_c);
+  const T normal_squared = dot(normal, normal);
+  const T determinant_inverse = reference(Tables::gram_determinant_inverse);
+  const T i1 = h11 * g11 + T(2) * h12 * g12 + h22 * g22 - T(2);
+  const T i2 = normal_squared * determinant_inverse - T(1);
+  T dw1, dw2;
+  law.derivatives(i1, i2, dw1, dw2);
+  const T two_area = T(2) * reference(Tables::area);
+  dw1 = dw1 * two_area;
+  dw2 = dw2 * two_area * determinant_inverse;
+  // The gradient of the area has the form of that of det g: d|N|/dx = (d det g/dx)/(2 |N|).
+  if constexpr (needs_global) dw2 = dw2 + T(0.5) * tension.area / Kokkos::sqrt(normal_squared);
+  Vec3<T> force_b = (dw2 * g12 - dw1 * h12) * edge_c - (dw1 * h11 + dw2 * g22) * edge_b;
+  Vec3<T> force_c = (dw2 * g12 - dw1 * h12) * edge_b - (dw1 * h22 + dw2 * g11) * edge_c;
+  Vec3<T> force_a = Vec3<T>{T(0), T(0), T(0)} - force_b - force_c;
+  if constexpr (needs_global) {  // dV/dx = N/6 for each corner, summed over a closed surface
+    const Vec3<T> pressure = (tension.volume * T(1.0 / 6)) * normal;
+    force_a = force_a - pressure;
+    force_b = force_b - pressure;
+    force_c = force_c - pressure;
+  }
+  add(a, force_a);
+  add(b, force_b);
+  add(c, force_c);
 }
 
-/// Force on vertex v. `position(u)` returns the vertex u as Vec3<T>; T is Real on devices and a SIMD pack over cells of the same type on the host.
-/// stiffness = 2 p kappa_B.
-template <class Real, class T, class Law, bool needs_bending, class Position>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<T> membrane_force(const MembraneTables<Real>& tables, const Law& law, const T& stiffness, const Tension<T>& tension,
-                                                   const int v, const Position& position) {
-  using Tables = MembraneTables<Real>;
-  const int degree = tables.degree(v);
-  const Vec3<T> origin = position(v);
-  Vec3<T> force{T(0), T(0), T(0)};
-
-  // The triangle before the current one: (v, n_{i-1}, n_i).
-  Vec3<T> previous_edge = position(tables.neighbour(v, degree - 1)) - origin;
-  Vec3<T> edge = position(tables.neighbour(v, 0)) - origin;
-  Vec3<T> previous_normal = cross(previous_edge, edge);
-
-  for (int i = 0; i < degree; ++i) {
-    const int next_vertex = tables.neighbour(v, i + 1 < degree ? i + 1 : 0);
-    const Vec3<T> next_edge = position(next_vertex) - origin;
-    const Vec3<T> normal = cross(edge, next_edge);
-    const auto reference = [&](int k) { return T(tables.reference(v, i, k)); };
-
-    // In-plane strain from the Gram matrix g of the deformed edges: I1 = G^-1 : g - 2, I2 = det g / det G - 1.
-    const T g11 = dot(edge, edge), g12 = dot(edge, next_edge), g22 = dot(next_edge, next_edge);
-    const T h11 = reference(Tables::gram_inverse_11), h12 = reference(Tables::gram_inverse_12), h22 = reference(Tables::gram_inverse_22);
-    const T normal_squared = dot(normal, normal);
-    const T determinant_inverse = reference(Tables::gram_determinant_inverse);
-    const T i1 = h11 * g11 + T(2) * h12 * g12 + h22 * g22 - T(2);
-    const T i2 = normal_squared * determinant_inverse - T(1);
-    T dw1, dw2;
-    law.derivatives(i1, i2, dw1, dw2);
-    const T two_area = T(2) * reference(Tables::area);
-    dw1 = dw1 * two_area;
-    dw2 = dw2 * two_area * determinant_inverse;
-    force = force + (dw1 * (h11 + h12) + dw2 * (g22 - g12)) * edge + (dw1 * (h12 + h22) + dw2 * (g11 - g12)) * next_edge;
-
-    // Global area and volume: dA/dv = n x (n_{i+1} - n_i)/2 with the unit normal, dV/dv = normal/6.
-    const Vec3<T> rim = next_edge - edge;
-    const T inverse_length = T(1) / Kokkos::sqrt(normal_squared);
-    force = force - (T(0.5) * tension.area * inverse_length) * cross(normal, rim) - (tension.volume * T(1.0 / 6)) * normal;
-
-    if constexpr (needs_bending) {
-      const T inverse_squared = inverse_length * inverse_length;
-      // v as an end of the edge (v, n_i) between this triangle (left) and the previous one (right):
-      // dtheta/dv = -(1 - t_l) dtheta/dl - (1 - t_r) dtheta/dr, dtheta/dl = -|e|/|N|^2 N.
-      const T length = Kokkos::sqrt(g11);
-      const T spoke = bending_moment(normal, previous_normal, previous_edge, length, reference(Tables::cos_spoke), reference(Tables::sin_spoke), stiffness);
-      const T along_left = T(1) - g12 / g11;
-      const T along_right = T(1) - dot(previous_edge, edge) / g11;
-      const T right = length / dot(previous_normal, previous_normal);
-      force = force - (spoke * length * along_left * inverse_squared) * normal - (spoke * right * along_right) * previous_normal;
-      // v as the tip opposite to the edge (n_i, n_{i+1}).
-      const Vec3<T> outer = position(tables.opposite(v, i)) - origin - edge;
-      const T rim_length = Kokkos::sqrt(dot(rim, rim));
-      const T moment = bending_moment(normal, cross(outer, rim), outer, rim_length, reference(Tables::cos_rim), reference(Tables::sin_rim), stiffness);
-      force = force + (moment * rim_length * inverse_squared) * normal;
-    }
-    previous_edge = edge;
-    previous_normal = normal;
-    edge = next_edge;
-  }
-  return force;
+/// Bending forces of one edge on its four vertices, E = p kappa_B (theta - theta_0)^2; theta > 0 where the surface is convex. stiffness = 2 p kappa_B.
+template <class Real, class T, class Position, class Add>
+KOKKOS_FORCEINLINE_FUNCTION void edge_forces(const MembraneTables<Real>& tables, const T& stiffness, const int e, const Position& position, const Add& add) {
+  const int p = tables.edges(e, 0), q = tables.edges(e, 1), left = tables.edges(e, 2), right = tables.edges(e, 3);
+  const Vec3<T> origin = position(p);
+  const Vec3<T> edge = position(q) - origin, to_left = position(left) - origin, to_right = position(right) - origin;
+  const Vec3<T> normal_left = cross(edge, to_left), normal_right = cross(to_right, edge);
+  const T squared_length = dot(edge, edge);
+  const T length = Kokkos::sqrt(squared_length);
+  const T c = dot(normal_left, normal_right), s = T(0) - length * dot(normal_left, to_right);
+  const T cos_0 = T(tables.edge_reference(e, 0)), sin_0 = T(tables.edge_reference(e, 1));
+  const T moment = stiffness * length * angle_of(s * cos_0 - c * sin_0, c * cos_0 + s * sin_0);
+  // dtheta/dl = -|e|/|N_l|^2 N_l at the left tip, likewise at the right one; the ends share the opposite forces by the feet of the tips on the edge.
+  const Vec3<T> force_left = (moment / dot(normal_left, normal_left)) * normal_left;
+  const Vec3<T> force_right = (moment / dot(normal_right, normal_right)) * normal_right;
+  const T inverse = T(1) / squared_length;
+  const Vec3<T> force_q = (T(0) - dot(to_left, edge) * inverse) * force_left - (dot(to_right, edge) * inverse) * force_right;
+  add(left, force_left);
+  add(right, force_right);
+  add(q, force_q);
+  add(p, Vec3<T>{T(0), T(0), T(0)} - force_left - force_right - force_q);
 }
 
 }  // namespace corpuscle

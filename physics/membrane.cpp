@@ -10,26 +10,30 @@
 namespace corpuscle {
 namespace {
 
-template <class Real, class Law, bool needs_bending>
+template <class Real, class Law, bool needs_bending, bool needs_global>
 class MembraneOf final : public Membrane {
  public:
-  MembraneOf(const Mesh& reference, const MembraneModuli& moduli, const Law& law, int first_vertex, int cell_count)
-      : reference_(reference), ring_(one_ring(reference)) {
-    const int vertices = int(reference.vertices.size()), faces = int(reference.faces.size());
+  MembraneOf(const Mesh& reference, const MembraneModuli& moduli, const Law& law, int first_vertex, int cell_count) : reference_(reference) {
+    if constexpr (needs_bending) edges_ = mesh_edges(reference);
     auto& t = block_.tables;
-    t.degree = degrees_on_device(ring_, "membrane_degree");
-    t.neighbour = ring_on_device(ring_, ring_.neighbour, "membrane_neighbour");
-    t.opposite = ring_on_device(ring_, ring_.opposite, "membrane_opposite");
-    t.reference = decltype(t.reference)("membrane_reference", vertices, ring_.max_degree);
     t.faces = faces_on_device(reference);
+    t.face_reference = decltype(t.face_reference)("membrane_face_reference", reference.faces.size());
+    t.edges = decltype(t.edges)("membrane_edges", edges_.size());
+    t.edge_reference = decltype(t.edge_reference)("membrane_edge_reference", edges_.size());
+    const auto edges = Kokkos::create_mirror_view(t.edges);
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const int corners[4] = {edges_[e].p, edges_[e].q, edges_[e].left, edges_[e].right};
+      for (int k = 0; k < 4; ++k) edges(e, k) = corners[k];
+    }
+    Kokkos::deep_copy(t.edges, edges);
 
     block_.law = law;
     bending_stiffness_ = 2 * moduli.bending_constant * moduli.bending;
     block_.global.area_modulus = moduli.global_area;
     block_.global.volume_modulus = moduli.volume;
-    block_.needs_global = moduli.global_area > 0 || moduli.volume > 0;
-    block_.vertices = vertices;
-    block_.faces = faces;
+    block_.vertices = int(reference.vertices.size());
+    block_.faces = int(reference.faces.size());
+    block_.edges = int(edges_.size());
     block_.first_vertex = first_vertex;
     block_.cell_count = cell_count;
     // Shared memory of a device multiprocessor holds about 800 vertices twice; larger meshes go to global scratch.
@@ -39,26 +43,26 @@ class MembraneOf final : public Membrane {
 
   void set_reference_scale(double scale) override {
     auto& t = block_.tables;
-    const auto reference = Kokkos::create_mirror_view(t.reference);
+    const auto faces = Kokkos::create_mirror_view(t.face_reference);
     const auto& x = reference_.vertices;
-    using Tables = MembraneTables<Real>;
-    for (int v = 0; v < ring_.vertex_count; ++v)
-      for (int i = 0; i < ring_.degree[v]; ++i) {
-        const int a = ring_.neighbour[v * ring_.max_degree + i];
-        const int b = ring_.neighbour[v * ring_.max_degree + (i + 1) % ring_.degree[v]];
-        const int before = ring_.neighbour[v * ring_.max_degree + (i + ring_.degree[v] - 1) % ring_.degree[v]];
-        const int beyond = ring_.opposite[v * ring_.max_degree + i];
-        const Vector3 e1 = scale * (x[a] - x[v]), e2 = scale * (x[b] - x[v]);
-        Eigen::Matrix2d gram;
-        gram << e1.dot(e1), e1.dot(e2), e1.dot(e2), e2.dot(e2);
-        const Eigen::Matrix2d inverse = gram.inverse();
-        const double spoke = edge_angle(x[v], x[a], x[b], x[before]), rim = edge_angle(x[a], x[b], x[v], x[beyond]);
-        const double values[9] = {inverse(0, 0),      inverse(0, 1),   inverse(1, 1),   1 / gram.determinant(), 0.5 * std::sqrt(gram.determinant()),
-                                  std::cos(spoke),    std::sin(spoke), std::cos(rim),   std::sin(rim)};
-        static_assert(Tables::sin_rim == 8);
-        for (int k = 0; k < 9; ++k) reference(v, i, k) = static_cast<Real>(values[k]);
-      }
-    Kokkos::deep_copy(t.reference, reference);
+    for (std::size_t f = 0; f < reference_.faces.size(); ++f) {
+      const auto& corner = reference_.faces[f];
+      const Vector3 e1 = scale * (x[corner[1]] - x[corner[0]]), e2 = scale * (x[corner[2]] - x[corner[0]]);
+      Eigen::Matrix2d gram;
+      gram << e1.dot(e1), e1.dot(e2), e1.dot(e2), e2.dot(e2);
+      const Eigen::Matrix2d inverse = gram.inverse();
+      const double values[] = {inverse(0, 0), inverse(0, 1), inverse(1, 1), 1 / gram.determinant(), 0.5 * std::sqrt(gram.determinant())};
+      static_assert(std::size(values) == MembraneTables<Real>::face_values);
+      for (int k = 0; k < MembraneTables<Real>::face_values; ++k) faces(f, k) = static_cast<Real>(values[k]);
+    }
+    Kokkos::deep_copy(t.face_reference, faces);
+    const auto angles = Kokkos::create_mirror_view(t.edge_reference);
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const double angle = edge_angle(x[edges_[e].p], x[edges_[e].q], x[edges_[e].left], x[edges_[e].right]);
+      angles(e, 0) = static_cast<Real>(std::cos(angle));
+      angles(e, 1) = static_cast<Real>(std::sin(angle));
+    }
+    Kokkos::deep_copy(t.edge_reference, angles);
     block_.bending_stiffness = bending_stiffness_ * scale * scale;
     block_.global.area = mesh_area(reference_) * scale * scale;
     block_.global.volume = mesh_volume(reference_) * scale * scale * scale;
@@ -79,20 +83,25 @@ class MembraneOf final : public Membrane {
 
   std::size_t bytes() const override {
     const auto& t = block_.tables;
-    return (t.degree.span() + t.neighbour.span() + t.opposite.span() + t.faces.span()) * sizeof(int) + t.reference.span() * sizeof(Real);
+    return (t.faces.span() + t.edges.span()) * sizeof(int) + (t.face_reference.span() + t.edge_reference.span()) * sizeof(Real);
   }
 
  private:
   Mesh reference_;
-  OneRing ring_;
+  std::vector<MeshEdge> edges_;
   double bending_stiffness_ = 0;
-  MembraneBlock<Real, Law, needs_bending> block_{};
+  MembraneBlock<Real, Law, needs_bending, needs_global> block_{};
 };
 
+/// A membrane computes only what its moduli ask for.
 template <class Real, class Law>
-std::unique_ptr<Membrane> pick_bending(const Mesh& reference, const MembraneModuli& moduli, const Law& law, int first_vertex, int cell_count) {
-  if (moduli.bending > 0) return std::make_unique<MembraneOf<Real, Law, true>>(reference, moduli, law, first_vertex, cell_count);
-  return std::make_unique<MembraneOf<Real, Law, false>>(reference, moduli, law, first_vertex, cell_count);
+std::unique_ptr<Membrane> with_needed_terms(const Mesh& reference, const MembraneModuli& moduli, const Law& law, int first_vertex, int cell_count) {
+  const auto make = [&](auto bending, auto global) -> std::unique_ptr<Membrane> {
+    return std::make_unique<MembraneOf<Real, Law, bending.value, global.value>>(reference, moduli, law, first_vertex, cell_count);
+  };
+  const bool global = moduli.global_area > 0 || moduli.volume > 0;
+  if (moduli.bending > 0) return global ? make(std::true_type{}, std::true_type{}) : make(std::true_type{}, std::false_type{});
+  return global ? make(std::false_type{}, std::true_type{}) : make(std::false_type{}, std::false_type{});
 }
 
 /// Calls f with the strain law of the moduli. A new law is a line here.
@@ -106,8 +115,8 @@ auto with_strain_law(const MembraneModuli& moduli, const F& f) {
 
 std::unique_ptr<Membrane> make_membrane(const Mesh& reference, const MembraneModuli& moduli, Precision precision, int first_vertex, int cell_count) {
   return with_strain_law(moduli, [&](const auto& law) {
-    if (precision == Precision::single_precision) return pick_bending<float>(reference, moduli, law, first_vertex, cell_count);
-    return pick_bending<double>(reference, moduli, law, first_vertex, cell_count);
+    if (precision == Precision::single_precision) return with_needed_terms<float>(reference, moduli, law, first_vertex, cell_count);
+    return with_needed_terms<double>(reference, moduli, law, first_vertex, cell_count);
   });
 }
 

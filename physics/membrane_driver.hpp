@@ -1,5 +1,7 @@
 // Kernel that computes the forces of one block of cells: one team a block. Host: a block is a SIMD pack of cells, which share topology and
-// reference state, so that every operation works on several cells at once; devices: a block is one cell, its positions lie in scratch memory.
+// reference state, so that every operation works on several cells at once; devices: a block is one cell. Positions and forces of the block lie in
+// scratch memory, where triangles and edges add to their vertices: every triangle and edge is computed once (a gather by vertices computes a triangle
+// three times and an edge four times).
 #pragma once
 #include <Kokkos_SIMD.hpp>
 #include <type_traits>
@@ -40,7 +42,7 @@ struct GlobalReference {
   double area_modulus = 0, volume_modulus = 0;
 };
 
-template <class Real, class Law, bool needs_bending>
+template <class Real, class Law, bool needs_bending, bool needs_global>
 struct MembraneBlock {
   using Pack = typename detail::PackOf<Real, runs_on_host>::type;
   static constexpr int lanes = detail::PackOf<Real, runs_on_host>::lanes;
@@ -51,29 +53,39 @@ struct MembraneBlock {
   Law law;
   double bending_stiffness;  ///< 2 p kappa_B
   GlobalReference global;
-  bool needs_global;
-  int vertices, faces, first_vertex, cell_count, scratch_level;
+  int vertices, faces, edges, first_vertex, cell_count, scratch_level;
   VertexVectors positions, forces;
 
   int blocks() const { return (cell_count + lanes - 1) / lanes; }
-  std::size_t scratch_bytes() const { return std::size_t(vertices) * 3 * sizeof(Pack) + 64; }
+  std::size_t scratch_bytes() const { return std::size_t(vertices) * 6 * sizeof(Pack) + 64; }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
     // Positions relative to the cell's first vertex: differences stay exact in single precision however far the cell has travelled.
-    Real* const packed = static_cast<Real*>(team.team_scratch(scratch_level).get_shmem_aligned(std::size_t(vertices) * 3 * sizeof(Pack), 64));
+    Real* const packed = static_cast<Real*>(team.team_scratch(scratch_level).get_shmem_aligned(std::size_t(vertices) * 6 * sizeof(Pack), 64));
+    Real* const packed_forces = packed + std::size_t(vertices) * 3 * lanes;
     const int block = team.league_rank();
+    std::size_t first_row[lanes];  // of each cell of the block
+    for (int lane = 0; lane < lanes; ++lane) first_row[lane] = std::size_t(first_vertex + cell_of(block, lane) * vertices);
+    const double* const x = positions.data();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, vertices), [&](const int v) {
-      for (int lane = 0; lane < lanes; ++lane) {
-        const int base = first_vertex + cell_of(block, lane) * vertices;
-        for (int k = 0; k < 3; ++k)
-          packed[(v * 3 + k) * lanes + lane] = static_cast<Real>(positions(base + v, k) - positions(base, k));
+      for (int k = 0; k < 3; ++k) {
+#pragma omp simd
+        for (int lane = 0; lane < lanes; ++lane) {
+          packed[(v * 3 + k) * lanes + lane] = static_cast<Real>(x[3 * (first_row[lane] + v) + k] - x[3 * first_row[lane] + k]);
+          packed_forces[(v * 3 + k) * lanes + lane] = 0;
+        }
       }
     });
     team.team_barrier();
 
     const auto position = [packed](const int v) { return Vec3<Pack>{load(packed, v, 0), load(packed, v, 1), load(packed, v, 2)}; };
+    const auto add = [packed_forces](const int v, const Vec3<Pack>& force) {
+      add_to(packed_forces, v, 0, force.x);
+      add_to(packed_forces, v, 1, force.y);
+      add_to(packed_forces, v, 2, force.z);
+    };
     Tension<Pack> tension{Pack(Real(0)), Pack(Real(0))};
-    if (needs_global) {
+    if constexpr (needs_global) {
       AreaVolume<Pack> sum{Pack(Real(0)), Pack(Real(0))};
       const auto add_face = [&](const int f, AreaVolume<Pack>& total) {
         const Vec3<Pack> a = position(tables.faces(f, 0)), b = position(tables.faces(f, 1)), c = position(tables.faces(f, 2));
@@ -87,10 +99,14 @@ struct MembraneBlock {
       tension.area = Pack(Real(global.area_modulus / global.area)) * (sum.area - Pack(Real(global.area)));
       tension.volume = Pack(Real(global.volume_modulus / global.volume)) * (sum.volume - Pack(Real(global.volume)));
     }
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, faces), [&](const int f) { triangle_forces<Real, Pack, Law, needs_global>(tables, law, tension, f, position, add); });
+    if constexpr (needs_bending)
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, edges), [&](const int e) { edge_forces<Real, Pack>(tables, Pack(Real(bending_stiffness)), e, position, add); });
+    team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, vertices), [&](const int v) {
-      const Vec3<Pack> force =
-          membrane_force<Real, Pack, Law, needs_bending>(tables, law, Pack(Real(bending_stiffness)), tension, v, position);
-      write(block, v, force);
+      const int used = cell_count - block * lanes < lanes ? cell_count - block * lanes : lanes;
+      for (int lane = 0; lane < used; ++lane)
+        for (int k = 0; k < 3; ++k) forces(first_row[lane] + v, k) = static_cast<double>(packed_forces[(v * 3 + k) * lanes + lane]);
     });
   }
 
@@ -108,20 +124,12 @@ struct MembraneBlock {
       return pack;
     }
   }
-  KOKKOS_FORCEINLINE_FUNCTION void write(const int block, const int v, const Vec3<Pack>& force) const {
+  /// On devices the threads of a team add to the same vertices.
+  KOKKOS_FORCEINLINE_FUNCTION static void add_to(Real* packed, const int v, const int k, const Pack& value) {
     if constexpr (std::is_same_v<Pack, Real>) {
-      const int row = first_vertex + block * vertices + v;
-      forces(row, 0) = force.x;
-      forces(row, 1) = force.y;
-      forces(row, 2) = force.z;
+      Kokkos::atomic_add(&packed[v * 3 + k], value);
     } else {
-      alignas(64) Real out[3][lanes];
-      force.x.copy_to(out[0], Kokkos::Experimental::simd_flag_aligned);
-      force.y.copy_to(out[1], Kokkos::Experimental::simd_flag_aligned);
-      force.z.copy_to(out[2], Kokkos::Experimental::simd_flag_aligned);
-      const int used = cell_count - block * lanes < lanes ? cell_count - block * lanes : lanes;
-      for (int lane = 0; lane < used; ++lane)
-        for (int k = 0; k < 3; ++k) forces(first_vertex + (block * lanes + lane) * vertices + v, k) = static_cast<double>(out[k][lane]);
+      (load(packed, v, k) + value).copy_to(packed + (v * 3 + k) * lanes, Kokkos::Experimental::simd_flag_aligned);
     }
   }
 };

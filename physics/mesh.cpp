@@ -115,21 +115,19 @@ OneRing one_ring(const Mesh& mesh) {
   const EdgeTable table(mesh);
   const std::size_t width = static_cast<std::size_t>(ring.max_degree);
   ring.neighbour.resize(mesh.vertices.size() * width);
-  ring.opposite.resize(mesh.vertices.size() * width);
   for (int v = 0; v < ring.vertex_count; ++v) {
     const std::size_t row = static_cast<std::size_t>(v) * width;
     int neighbour = first[v];
     for (int i = 0; i < ring.degree[v]; ++i) {
       const int next = table.corner(v, neighbour);
       ring.neighbour[row + i] = neighbour;
-      ring.opposite[row + i] = table.corner(next, neighbour);
       neighbour = next;
       if ((neighbour == first[v]) != (i + 1 == ring.degree[v]))
         throw InputError("The faces around vertex " + std::to_string(v) +
                          " (counted from 0) do not form a single fan; split or remove that vertex so that the surface is manifold.");
     }
     // Padding points at the vertex itself: a kernel that loads a full row stays within the cell.
-    for (std::size_t i = ring.degree[v]; i < width; ++i) ring.neighbour[row + i] = ring.opposite[row + i] = v;
+    for (std::size_t i = ring.degree[v]; i < width; ++i) ring.neighbour[row + i] = v;
   }
   return ring;
 }

@@ -45,13 +45,12 @@ double mesh_area(const Mesh& mesh);
 double mesh_effective_volume(const Mesh& mesh, double shell_thickness);
 Vector3 mesh_centroid(const Mesh& mesh);  ///< of the enclosed volume
 
-/// Neighbourhood of every vertex, shared by all cells of a type . Row v of each table has `degree(v)` valid entries.
+/// Neighbourhood of every vertex, shared by all cells of a type. Row v has `degree[v]` valid entries.
 struct OneRing {
   int vertex_count = 0;
   int max_degree = 0;
   std::vector<int> degree;      ///< [V]
   std::vector<int> neighbour;   ///< [V][max_degree] in counter-clockwise order seen from outside: faces are (v, n_i, n_{i+1})
-  std::vector<int> opposite;    ///< [V][max_degree] vertex across the edge (n_i, n_{i+1}), on the side away from v
 };
 OneRing one_ring(const Mesh& mesh);
 

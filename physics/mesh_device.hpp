@@ -17,12 +17,12 @@ inline FaceTable faces_on_device(const Mesh& mesh) {
   return faces;
 }
 
-/// Rows of a one-ring table, `ring.neighbour` or `ring.opposite`: [V][max degree]; entries beyond a vertex's degree are 0.
-inline Array2<int> ring_on_device(const OneRing& ring, const std::vector<int>& table, const std::string& label) {
+/// Neighbours of every vertex: [V][max degree]; entries beyond a vertex's degree are 0.
+inline Array2<int> ring_on_device(const OneRing& ring, const std::string& label) {
   const Array2<int> rows(label, ring.vertex_count, ring.max_degree);
   const auto host = Kokkos::create_mirror_view(rows);
   for (int v = 0; v < ring.vertex_count; ++v)
-    for (int i = 0; i < ring.degree[v]; ++i) host(v, i) = table[v * ring.max_degree + i];
+    for (int i = 0; i < ring.degree[v]; ++i) host(v, i) = ring.neighbour[v * ring.max_degree + i];
   Kokkos::deep_copy(rows, host);
   return rows;
 }

@@ -118,7 +118,7 @@ SurfaceMobility surface_mobility(const CellType& type, const MobilityModel& mode
   m.count = type.count;
   m.vertices = type.vertices();
   m.degree = degrees_on_device(ring, "mobility_degree");
-  m.neighbour = ring_on_device(ring, ring.neighbour, "mobility_neighbour");
+  m.neighbour = ring_on_device(ring, "mobility_neighbour");
   return m;
 }
 
