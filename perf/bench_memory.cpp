@@ -1,7 +1,6 @@
 // Bytes that suspensions allocate, against the formula that `corpuscle plan` prints and the growth of the process.
-#include <sys/resource.h>
+#include <malloc.h>
 
-#include <fmt/format.h>
 #include <fstream>
 
 #include "perf/red_cells.hpp"
@@ -13,21 +12,25 @@ using namespace corpuscle::perf;
 
 namespace {
 
-double peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * double(usage.ru_maxrss);
+/// A line of /proc/self/status in bytes: VmRSS is present memory, VmHWM its peak.
+double memory_of_process(const std::string& wanted) {
+  std::ifstream file("/proc/self/status");
+  std::string key;
+  for (double kibibytes = 0; file >> key; file.ignore(1000, '\n'))
+    if (key == wanted + ":" && file >> kibibytes) return kibibytes * 1024;
+  return 0;
 }
-double present_bytes() {
-  std::ifstream file("/proc/self/statm");
-  double total = 0, resident = 0;
-  file >> total >> resident;
-  return resident * 4096;
+/// Gives freed memory back and lets the peak start anew (proc(5), clear_refs). False where the system doesn't allow it.
+bool forget_peak() {
+  malloc_trim(0);
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5" << std::flush;
+  return bool(file);
 }
 
-/// Cases must come in the order of their size, as the peak of the process never falls.
 void measure(Section& section, const std::string& name, const SuspensionCase& c) {
-  const double before = present_bytes();
+  const bool peak_known = forget_peak();
+  const double before = memory_of_process("VmRSS");
   const auto suspension = make_suspension(c.problem, c.lattice, c.types, c.positions);
   suspension->step(), suspension->step();
   const double bytes = double(suspension->bytes()), nodes = c.nodes();
@@ -35,7 +38,8 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c)
   Problem fluid_only = c.problem;
   fluid_only.cells.clear();
   Json row = {{"nodes", c.lattice.nodes}, {"vertices", vertices}, {"MiB", bytes / 1048576}, {"predicted_MiB", double(predicted_bytes(c.problem, c.lattice)) / 1048576},
-              {"peak_MiB", (peak_bytes() - before) / 1048576}, {"bytes_per_node", bytes / nodes}};
+              {"bytes_per_node", bytes / nodes}};
+  if (peak_known) row["peak_MiB"] = (memory_of_process("VmHWM") - before) / 1048576;
   if (vertices > 0) {
     // The same box with a force and velocity field but without vertices: what is left belongs to the vertices.
     LatticeParameters none = c.lattice;

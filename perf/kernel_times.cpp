@@ -32,8 +32,8 @@ void listen(bool on) {
 std::string operator_of(const std::string& label) {
   // By the beginning of the label.
   static const std::vector<std::pair<std::string, std::string>> table{
-      {"membrane", "membrane"}, {"contact", "contact"}, {"bin_", "contact"},          {"spread", "spread"},           {"sort_", "spread"},      {"collide", "collide"}, {"exchange", "halo"},
-      {"bounce", "halo"},       {"scatter_force", "halo"}, {"gather_velocity", "halo"}, {"interpolate", "interpolate"}, {"advance", "motion"}};
+      {"membrane", "membrane"}, {"contact", "contact"},    {"bin_", "contact"},         {"spread", "spread"},           {"sort_", "spread"},  {"collide", "collide"},
+      {"exchange", "halo"},     {"bounce", "halo"},        {"scatter_force", "halo"},   {"gather_velocity", "halo"},    {"interpolate", "interpolate"}, {"advance", "motion"}};
   for (const auto& [beginning, name] : table)
     if (label.rfind(beginning, 0) == 0) return name;
   return "other";

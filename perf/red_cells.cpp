@@ -1,5 +1,6 @@
 #include "perf/red_cells.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.hpp"
@@ -10,7 +11,7 @@ namespace corpuscle::perf {
 
 namespace {
 
-SuspensionCase with_count(const SuspensionSettings& settings, int count) {
+SuspensionCase with_count(const SuspensionSettings& settings, int count, bool overlapping = false) {
   SuspensionCase c;
   Problem& p = c.problem;
   for (int k = 0; k < 3; ++k) p.box.size[k] = settings.nodes[k] / settings.radius;
@@ -31,21 +32,26 @@ SuspensionCase with_count(const SuspensionSettings& settings, int count) {
   p.accuracy.precision = settings.precision;
   p.accuracy.membrane_precision = settings.membrane;
   p.accuracy.allow_unstable = true;  // a benchmark takes a few steps
+  if (overlapping) {
+    p.contact.enabled = false;
+    p.accuracy.shell_thickness = 0;  // no refusal of what could not be packed
+  }
   c.lattice = to_lattice(p);
   c.types = make_cell_types(p, c.lattice);
   return c;
 }
 
-}  // namespace
-
-SuspensionCase suspension_case(const SuspensionSettings& settings) {
+int count_for(const SuspensionSettings& settings) {
   const double volume = mesh_volume(red_cell_mesh(settings.radius, settings.subdivision));
-  return with_count(settings, int(std::lround(settings.phi * settings.nodes[0] * settings.nodes[1] * settings.nodes[2] / volume)));
+  return std::max(1, int(std::lround(settings.phi * settings.nodes[0] * settings.nodes[1] * settings.nodes[2] / volume)));
 }
 
+}  // namespace
+
+SuspensionCase suspension_case(const SuspensionSettings& settings) { return with_count(settings, count_for(settings)); }
+
 SuspensionCase random_suspension(const SuspensionSettings& settings, double z_from, double z_to) {
-  SuspensionCase c = suspension_case(settings);
-  c.problem.contact.enabled = false;
+  SuspensionCase c = with_count(settings, count_for(settings), true);
   RandomStream random(1);
   const double margin = settings.walls ? settings.radius : 0, height = settings.nodes[2];
   for (int i = 0; i < c.cells(); ++i) {
@@ -74,7 +80,6 @@ SuspensionCase packed_suspension(const SuspensionSettings& settings, std::array<
 
 SuspensionCase with_positions_of(const SuspensionCase& packed, const SuspensionSettings& settings) {
   SuspensionCase c = with_count(settings, packed.cells());
-  c.problem.contact.enabled = packed.problem.contact.enabled;
   c.positions = packed.positions;
   return c;
 }
