@@ -39,7 +39,7 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c,
                                            section.effort());
   const double markers = c.vertices();
   section.row(fmt::format("{}, {}-point, {}", name, points, sizeof(Real) == 4 ? "float" : "double"),
-              {{"markers", markers}, {"nodes", c.lattice.nodes}, {"spread_M_s", markers / seconds[0] / 1e6}, {"interpolate_M_s", markers / seconds[3] / 1e6},
+              {{"markers", std::int64_t(markers)}, {"nodes", c.lattice.nodes}, {"spread_M_s", markers / seconds[0] / 1e6}, {"interpolate_M_s", markers / seconds[3] / 1e6},
                {"atomic_M_s", markers / seconds[1] / 1e6}, {"serial_M_s", markers / seconds[2] / 1e6}, {"over_atomic", seconds[1] / seconds[0]}, {"over_serial", seconds[2] / seconds[0]}});
 }
 

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
           const double seconds = best_of([&] { membrane->compute_forces(cells.positions(), cells.forces()); }, section.effort());
           section.row(fmt::format("{} {}{}{}", precision == Precision::single_precision ? "float" : "double", law == StrainLawKind::skalak ? "Skalak" : "neo-Hookean",
                                   bending ? ", bending" : "", global ? ", area, volume" : ""),
-                      {{"cells", c.cells()}, {"vertices", c.vertices()}, {"M_s", c.vertices() / seconds / 1e6}});
+                      {{"cells", c.cells()}, {"vertices", std::int64_t(c.vertices())}, {"M_s", c.vertices() / seconds / 1e6}});
         }
   return section.finish();
 }

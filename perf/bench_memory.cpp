@@ -37,7 +37,7 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c)
   const double vertices = c.types.empty() ? 0 : c.vertices();
   Problem fluid_only = c.problem;
   fluid_only.cells.clear();
-  Json row = {{"nodes", c.lattice.nodes}, {"vertices", vertices}, {"MiB", bytes / 1048576}, {"predicted_MiB", double(predicted_bytes(c.problem, c.lattice)) / 1048576},
+  Json row = {{"nodes", c.lattice.nodes}, {"vertices", std::int64_t(vertices)}, {"MiB", bytes / 1048576}, {"predicted_MiB", double(predicted_bytes(c.problem, c.lattice)) / 1048576},
               {"bytes_per_node", bytes / nodes}};
   if (peak_known) row["peak_MiB"] = (memory_of_process("VmHWM") - before) / 1048576;
   if (vertices > 0) {

@@ -24,6 +24,6 @@ int main(int argc, char** argv) {
   const StepTimes times = step_times([&] { suspension->step(); }, section.effort().quick ? 1 : 4, section.effort().quick ? 2 : 8);
   Json row = {{"threads", ExecSpace().concurrency()}, {"cells", c.cells()}, {"nodes", c.lattice.nodes}, {"step_ms", times.step * 1e3}};
   add_parts(row, times);
-  section.row(fmt::format("{} threads", ExecSpace().concurrency()), row);
+  section.row(fmt::format("threads: {}", ExecSpace().concurrency()), row);
   return section.finish();
 }

@@ -14,7 +14,7 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c)
   const auto suspension = make_suspension(c.problem, c.lattice, c.types, c.positions);
   const StepTimes times = step_times([&] { suspension->step(); }, section.effort().quick ? 1 : 3, section.effort().quick ? 2 : 8);
   suspension->check();
-  Json row = {{"phi", c.lattice.phi_geometric}, {"points", c.problem.accuracy.delta_kernel}, {"cells", c.cells()}, {"vertices", c.vertices()}, {"nodes", c.lattice.nodes},
+  Json row = {{"phi", c.lattice.phi_geometric}, {"points", c.problem.accuracy.delta_kernel}, {"cells", c.cells()}, {"vertices", std::int64_t(c.vertices())}, {"nodes", c.lattice.nodes},
               {"contact", c.problem.contact.enabled}, {"MLUPS", c.nodes() / times.step / 1e6}, {"step_ms", times.step * 1e3}};
   add_parts(row, times);
   row["spread_M_s"] = c.vertices() / times.parts.at("spread") / 1e6;
