@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
   SuspensionSettings thin = s;
   thin.nodes = section.effort().quick ? std::array{32, 32, 8} : std::array{512, 512, 8};
   thin.walls = false;
+  thin.radius = thin.subdivision = 4;
   measure<float>(section, "thin box, 8 nodes high", random_suspension(thin), 4, false);
   SuspensionSettings one = s;
   one.nodes = {section.effort().quick ? 24 : 64, section.effort().quick ? 24 : 64, section.effort().quick ? 24 : 64};

@@ -91,6 +91,12 @@ def scaling(programs, quick, threads):
     return section
 
 
+def write(output, result):
+    temporary = output.with_name(output.name + ".part")
+    temporary.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    temporary.replace(output)
+
+
 def text_table(rows):
     columns = []
     for row in rows:
@@ -139,9 +145,7 @@ def main():
         if "amdahl" in section:
             print(f"\nAmdahl: speedup and the serial share that follows\n{text_table(section['amdahl'])}")
         print(f"({section['seconds']} s)\n", flush=True)
-    temporary = output.with_name(output.name + ".part")
-    temporary.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    temporary.replace(output)
+        write(output, result)  # at once: a section that fails loses nothing but itself
     if warning:
         print(f"warning: {warning}", file=sys.stderr)
     print(output)
