@@ -111,7 +111,7 @@ def peers(result):
     for case, setting in cases:
         row = ours(case)
         same.append(["coupled at every step", "192 red cells x 642 vertices, φ = 0.363, double", digits(HEMOCELL["every step"], 2),
-                     f"{row['cells']} red cells x 642 vertices, φ = {row['phi']:.3f}, {setting}", digits(row["MLUPS"]), digits(row["MLUPS"] / HEMOCELL["every step"], 2)])
+                     f"{row['cells']} red cells x {row['vertices'] // row['cells']} vertices, φ = {row['phi']:.3f}, {setting}", digits(row["MLUPS"]), digits(row["MLUPS"] / HEMOCELL["every step"], 2)])
     row = ours(cases[0][0])
     same.append(["membrane every 20th, velocity every 5th step", "as above", digits(HEMOCELL["every 20th"], 2), f"every step, {cases[0][1]}", digits(row["MLUPS"]),
                  digits(row["MLUPS"] / HEMOCELL["every 20th"], 2)])
@@ -141,5 +141,15 @@ def targets(result):
     return table(["what", "target", "measured", "reached"], rows)
 
 
-TABLES = {"machine": machine, "bandwidth": bandwidth, "fluid": fluid, "coupling": coupling, "membrane": membrane, "contact": contact, "step": step, "scaling": scaling, "growth": growth,
+def summary(result):
+    """The table of the README."""
+    fluids, steps = rows_of(result, "fluid"), rows_of(result, "step")
+    dense = [row for row in steps if row["case"].startswith("phi 0.36, ")]
+    first, nodes = dense[0], lattice(fluids[0]["nodes"])
+    head = f"whole coupled step at phi = 0.36, {first['cells']} red cells of {first['vertices'] // first['cells']} vertices, {lattice(first['nodes'])} nodes"
+    alone = [digits(find(fluids, f"{precision} BGK periodic, {nodes}")["MLUPS"]) for precision in ("float", "double")]
+    return table([head, "MLUPS"], [[row["case"].split(", ", 1)[1], digits(row["MLUPS"])] for row in dense] + [[f"fluid alone, float / double, {nodes}", " / ".join(alone)]])
+
+
+TABLES = {"summary": summary, "machine": machine, "bandwidth": bandwidth, "fluid": fluid, "coupling": coupling, "membrane": membrane, "contact": contact, "step": step, "scaling": scaling, "growth": growth,
           "memory": memory, "peers": peers, "targets": targets}
