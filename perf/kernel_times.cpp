@@ -1,6 +1,9 @@
 #include "perf/kernel_times.hpp"
 
 #include <Kokkos_Core.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <vector>
 
 namespace corpuscle::perf {
 namespace {
@@ -36,6 +39,7 @@ std::string operator_of(const std::string& label) {
       {"exchange", "halo"},     {"bounce", "halo"},        {"scatter_force", "halo"},   {"gather_velocity", "halo"},    {"interpolate", "interpolate"}, {"advance", "motion"}};
   for (const auto& [beginning, name] : table)
     if (label.rfind(beginning, 0) == 0) return name;
+  if (label.rfind("Kokkos::", 0) != 0) std::fprintf(stderr, "warning: the kernel %s belongs to no operator, add it to perf/kernel_times.cpp\n", label.c_str());
   return "other";
 }
 

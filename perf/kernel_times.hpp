@@ -12,7 +12,7 @@ namespace corpuscle::perf {
 /// Operators of a step in its order; "other" is a kernel that belongs to none, "outside" the time between kernels: launches and host code.
 inline const std::array<std::string, 9> operators{"membrane", "contact", "spread", "collide", "halo", "interpolate", "motion", "other", "outside"};
 
-/// The operator that a kernel belongs to, by its label.
+/// The operator that a kernel belongs to, by its label. Warns of kernels of this project that belong to none.
 std::string operator_of(const std::string& label);
 
 struct StepTimes {
