@@ -49,7 +49,8 @@ int main(int argc, char** argv) {
     const InPlace update(bytes);
     const Copy copy(bytes);
     const auto seconds = interleaved_seconds({update, copy}, section.effort());
-    section.row(Json(mebibytes).dump() + " MiB", {{"MiB", mebibytes}, {"in_place_GB_s", update.traffic() / seconds[0] / 1e9}, {"copy_GB_s", copy.traffic() / seconds[1] / 1e9}});
+    section.row(Json(mebibytes).dump() + " MiB",
+                {{"MiB", mebibytes}, {"in_place_GB_s", update.traffic() / seconds[0] / 1e9}, {"copy_GB_s", copy.traffic() / seconds[1] / 1e9}});
   }
   peak<float>(section, "peak, float");
   peak<double>(section, "peak, double");

@@ -12,7 +12,8 @@ using namespace corpuscle;
 using namespace corpuscle::perf;
 
 int main(int argc, char** argv) {
-  Section section(argc, argv, "contact", "Seconds of a packing; contact forces in it.", {{"packing_s", "lower"}, {"kept_M_s", "higher"}, {"rebuilt_M_s", "higher"}, {"pairs_M_s", "higher"}});
+  Section section(argc, argv, "contact", "Seconds of a packing; contact forces in it.",
+                  {{"packing_s", "lower"}, {"kept_M_s", "higher"}, {"rebuilt_M_s", "higher"}, {"pairs_M_s", "higher"}});
   Kokkos::ScopeGuard scope(argc, argv);
   SuspensionSettings s;
   s.points = 3;
@@ -44,8 +45,15 @@ int main(int argc, char** argv) {
   // Rows name each pair twice.
   const auto begin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, contact.neighbours().begin);
   const double vertices = c.vertices(), pairs = begin(begin.extent(0) - 1) / 2;
-  section.row(fmt::format("phi_eff {:.2f}, {} cells", c.lattice.phi_effective, c.cells()),
-              {{"cells", c.cells()}, {"vertices", std::int64_t(vertices)}, {"phi", c.lattice.phi_geometric}, {"packing_s", packing}, {"rounds", rounds}, {"pairs_per_vertex", pairs / vertices},
-               {"kept_M_s", vertices / seconds[0] / 1e6}, {"pairs_M_s", pairs / seconds[0] / 1e6}, {"rebuilt_M_s", 2 * vertices / seconds[1] / 1e6}});
+  const std::string title = fmt::format("phi_eff {:.2f}, {} cells", c.lattice.phi_effective, c.cells());
+  section.row(title, {{"cells", c.cells()},
+                      {"vertices", std::int64_t(vertices)},
+                      {"phi", c.lattice.phi_geometric},
+                      {"packing_s", packing},
+                      {"rounds", rounds},
+                      {"pairs_per_vertex", pairs / vertices},
+                      {"kept_M_s", vertices / seconds[0] / 1e6},
+                      {"pairs_M_s", pairs / seconds[0] / 1e6},
+                      {"rebuilt_M_s", 2 * vertices / seconds[1] / 1e6}});
   return section.finish();
 }

@@ -33,27 +33,31 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c,
       if (!(std::abs(double(copy(n, k)) - double(serial_field[4 * n + k])) < 1e-4 * (1e-4 + std::abs(double(copy(n, k))))))
         throw std::runtime_error("bench_coupling: spread differs from the textbook's at node " + std::to_string(n));
 
-  const auto seconds = interleaved_seconds({[&] { coupling.spread(x, F, field); }, [&] { atomic.spread(x, F, atomic_field); },
-                                            [&] { textbook_spread(grid, points, c.positions, forces, serial_field.data()); },
-                                            [&] { coupling.interpolate(x, u, field); }},
-                                           section.effort());
+  const auto seconds =
+      interleaved_seconds({[&] { coupling.spread(x, F, field); }, [&] { atomic.spread(x, F, atomic_field); },
+                           [&] { textbook_spread(grid, points, c.positions, forces, serial_field.data()); }, [&] { coupling.interpolate(x, u, field); }},
+                          section.effort());
   const double markers = c.vertices();
-  section.row(fmt::format("{}, {}-point, {}", name, points, sizeof(Real) == 4 ? "float" : "double"),
-              {{"markers", std::int64_t(markers)}, {"nodes", c.lattice.nodes}, {"spread_M_s", markers / seconds[0] / 1e6}, {"interpolate_M_s", markers / seconds[3] / 1e6},
-               {"atomic_M_s", markers / seconds[1] / 1e6}, {"serial_M_s", markers / seconds[2] / 1e6}, {"over_atomic", seconds[1] / seconds[0]}, {"over_serial", seconds[2] / seconds[0]}});
+  const std::string title = fmt::format("{}, {}-point, {}", name, points, sizeof(Real) == 4 ? "float" : "double");
+  section.row(title, {{"markers", std::int64_t(markers)},
+                      {"nodes", c.lattice.nodes},
+                      {"spread_M_s", markers / seconds[0] / 1e6},
+                      {"interpolate_M_s", markers / seconds[3] / 1e6},
+                      {"atomic_M_s", markers / seconds[1] / 1e6},
+                      {"serial_M_s", markers / seconds[2] / 1e6},
+                      {"over_atomic", seconds[1] / seconds[0]},
+                      {"over_serial", seconds[2] / seconds[0]}});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  Section section(argc, argv, "coupling", "Markers of red cells at random places. over_atomic, over_serial: how many times faster spreading is than with atomics and than the textbook's serial loop.",
+  Section section(argc, argv, "coupling",
+                  "Markers of red cells at random places. over_atomic, over_serial: how many times faster spreading is than with atomics and than the "
+                  "textbook's serial loop.",
                   {{"spread_M_s", "higher"}, {"interpolate_M_s", "higher"}});
   Kokkos::ScopeGuard scope(argc, argv);
-  SuspensionSettings s;
-  if (section.effort().quick) {
-    s.nodes = {32, 32, 32};
-    s.radius = s.subdivision = 4;
-  }
+  SuspensionSettings s = usual_settings(section.effort().quick);
   const SuspensionCase dense = random_suspension(s);
   for (const int points : {2, 3, 4}) {
     measure<float>(section, "phi 0.36", dense, points, true);

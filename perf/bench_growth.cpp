@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     const double x = std::log(c.cells()), y = std::log(times.step);
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
-  section.note(fmt::format("Step time grows with the number of cells to the power {:.2f}. Small boxes fit the caches.", (n * sxy - sx * sy) / (n * sxx - sx * sx)));
+  section.note(
+      fmt::format("Step time grows with the number of cells to the power {:.2f}. Small boxes fit the caches.", (n * sxy - sx * sy) / (n * sxx - sx * sx)));
   return section.finish();
 }

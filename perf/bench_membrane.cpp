@@ -11,11 +11,7 @@ using namespace corpuscle::perf;
 int main(int argc, char** argv) {
   Section section(argc, argv, "membrane", "Membrane forces of red cells, deformed by some per cent.", {{"M_s", "higher"}});
   Kokkos::ScopeGuard scope(argc, argv);
-  SuspensionSettings s;
-  if (section.effort().quick) {
-    s.nodes = {32, 32, 32};
-    s.radius = s.subdivision = 4;
-  }
+  SuspensionSettings s = usual_settings(section.effort().quick);
   SuspensionCase c = random_suspension(s);
   for (std::size_t i = 0; i < c.positions.size(); ++i) c.positions[i] *= i % 3 == 0 ? 1.05 : i % 3 == 1 ? 0.97 : 1.0;
   const Cells cells(c.types, c.positions);
@@ -30,8 +26,8 @@ int main(int argc, char** argv) {
           moduli.volume = global ? 1 : 0;
           const auto membrane = make_membrane(c.types[0].reference, moduli, precision, 0, c.cells());
           const double seconds = best_of([&] { membrane->compute_forces(cells.positions(), cells.forces()); }, section.effort());
-          section.row(fmt::format("{} {}{}{}", precision == Precision::single_precision ? "float" : "double", law == StrainLawKind::skalak ? "Skalak" : "neo-Hookean",
-                                  bending ? ", bending" : "", global ? ", area, volume" : ""),
+          section.row(fmt::format("{} {}{}{}", precision == Precision::single_precision ? "float" : "double",
+                                  law == StrainLawKind::skalak ? "Skalak" : "neo-Hookean", bending ? ", bending" : "", global ? ", area, volume" : ""),
                       {{"cells", c.cells()}, {"vertices", std::int64_t(c.vertices())}, {"M_s", c.vertices() / seconds / 1e6}});
         }
   return section.finish();

@@ -35,9 +35,10 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c)
   suspension->step(), suspension->step();
   const double bytes = double(suspension->bytes()), nodes = c.nodes();
   const double vertices = c.types.empty() ? 0 : c.vertices();
-  Problem fluid_only = c.problem;
-  fluid_only.cells.clear();
-  Json row = {{"nodes", c.lattice.nodes}, {"vertices", std::int64_t(vertices)}, {"MiB", bytes / 1048576}, {"predicted_MiB", double(predicted_bytes(c.problem, c.lattice)) / 1048576},
+  Json row = {{"nodes", c.lattice.nodes},
+              {"vertices", std::int64_t(vertices)},
+              {"MiB", bytes / 1048576},
+              {"predicted_MiB", double(predicted_bytes(c.problem, c.lattice)) / 1048576},
               {"bytes_per_node", bytes / nodes}};
   if (peak_known) row["peak_MiB"] = (memory_of_process("VmHWM") - before) / 1048576;
   if (vertices > 0) {
@@ -68,11 +69,7 @@ int main(int argc, char** argv) {
   Section section(argc, argv, "memory", "Allocated by the suspension, predicted by the formula of `corpuscle plan`, and growth of the process' peak.",
                   {{"MiB", "lower"}, {"predicted_MiB", "lower"}, {"peak_MiB", "lower"}});
   Kokkos::ScopeGuard scope(argc, argv);
-  SuspensionSettings s;
-  if (section.effort().quick) {
-    s.nodes = {32, 32, 32};
-    s.radius = s.subdivision = 4;
-  }
+  SuspensionSettings s = usual_settings(section.effort().quick);
   section.note("bytes_per_node of suspensions: fields of the formula; bytes_per_vertex: the rest of what was allocated, lists of contacts and bins included.");
   measure(section, "fluid alone, float", without_cells(s));
   s.phi = 0.2;

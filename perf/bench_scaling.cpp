@@ -13,12 +13,8 @@ int main(int argc, char** argv) {
   metrics.insert(metrics.begin(), {"step_ms", "lower"});
   Section section(argc, argv, "scaling", "One dense step at several numbers of threads.", metrics);
   Kokkos::ScopeGuard scope(argc, argv);
-  SuspensionSettings s;
+  SuspensionSettings s = usual_settings(section.effort().quick);
   s.membrane = Precision::single_precision;
-  if (section.effort().quick) {
-    s.nodes = {32, 32, 32};
-    s.radius = s.subdivision = 4;
-  }
   const SuspensionCase c = packed_suspension(s, {4, 4, 2});
   const auto suspension = make_suspension(c.problem, c.lattice, c.types, c.positions);
   const StepTimes times = step_times([&] { suspension->step(); }, section.effort().quick ? 1 : 4, section.effort().quick ? 2 : 8);

@@ -3,9 +3,11 @@
 
     python perf/compare.py OLD.json NEW.json [--tolerance 0.10]
 
-Rows are matched by section and case; each section says which of its columns count and whether more or less of them is better. Prints what changed by more than the tolerance.
+Rows are matched by section and case; each section says which of its columns count and whether more or less of them is better.
+Prints what changed by more than the tolerance.
 Exit code: 0 nothing got slower, 1 something did, 2 a file is no result file. Needs the standard library only.
 """
+
 import argparse
 import json
 import pathlib
@@ -23,7 +25,7 @@ def read(path):
     except ValueError:
         fail(f"{path} is no JSON: it must be a result file of ./dev bench.")
     if not isinstance(result, dict) or "corpuscle_benchmarks" not in result or not isinstance(result.get("sections"), dict):
-        fail(f"{path} is no result file of ./dev bench: \"corpuscle_benchmarks\" and \"sections\" are missing.")
+        fail(f'{path} is no result file of ./dev bench: "corpuscle_benchmarks" and "sections" are missing.')
     return result
 
 
@@ -35,10 +37,14 @@ def fail(message):
 def differences(old, new):
     """Why timings of the two files can't be compared as they are."""
     said = []
-    for name, a, b in [("processor", old.get("machine", {}).get("cpu"), new.get("machine", {}).get("cpu")), ("cores", old.get("machine", {}).get("cores"), new.get("machine", {}).get("cores")),
-                       ("threads", old.get("threads"), new.get("threads")), ("quick", old.get("quick"), new.get("quick")),
-                       ("compiler", (old.get("build") or {}).get("compiler"), (new.get("build") or {}).get("compiler")),
-                       ("backend", (old.get("build") or {}).get("backend"), (new.get("build") or {}).get("backend"))]:
+    for name, a, b in [
+        ("processor", old.get("machine", {}).get("cpu"), new.get("machine", {}).get("cpu")),
+        ("cores", old.get("machine", {}).get("cores"), new.get("machine", {}).get("cores")),
+        ("threads", old.get("threads"), new.get("threads")),
+        ("quick", old.get("quick"), new.get("quick")),
+        ("compiler", (old.get("build") or {}).get("compiler"), (new.get("build") or {}).get("compiler")),
+        ("backend", (old.get("build") or {}).get("backend"), (new.get("build") or {}).get("backend")),
+    ]:
         if a != b:
             said.append(f"the files differ in {name} ({a}, then {b})")
     for which, result in (("old", old), ("new", new)):
@@ -54,7 +60,9 @@ def number(row, key):
 
 
 def changes(old, new):
-    """(slowdown, section, case, column, old value, new value) of all matching numbers, and the cases that only one file has. slowdown 1.25: takes 1.25 times as long."""
+    """(slowdown, section, case, column, old value, new value) of all matching numbers, and the cases that only one file has.
+
+    slowdown 1.25: takes 1.25 times as long."""
     found, lost, gained = [], [], []
     for name in dict.fromkeys([*old["sections"], *new["sections"]]):
         a, b = (r["sections"].get(name, {"rows": [], "better": {}}) for r in (old, new))

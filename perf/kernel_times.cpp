@@ -35,8 +35,9 @@ void listen(bool on) {
 std::string operator_of(const std::string& label) {
   // By the beginning of the label.
   static const std::vector<std::pair<std::string, std::string>> table{
-      {"membrane", "membrane"}, {"contact", "contact"},    {"bin_", "contact"},         {"spread", "spread"},           {"sort_", "spread"},  {"collide", "collide"},
-      {"exchange", "halo"},     {"bounce", "halo"},        {"scatter_force", "halo"},   {"gather_velocity", "halo"},    {"interpolate", "interpolate"}, {"advance", "motion"}};
+      {"membrane", "membrane"},       {"contact", "contact"}, {"bin_", "contact"}, {"spread", "spread"},      {"sort_", "spread"},
+      {"collide", "collide"},         {"exchange", "halo"},   {"bounce", "halo"},  {"scatter_force", "halo"}, {"gather_velocity", "halo"},
+      {"interpolate", "interpolate"}, {"advance", "motion"}};
   for (const auto& [beginning, name] : table)
     if (label.rfind(beginning, 0) == 0) return name;
   if (label.rfind("Kokkos::", 0) != 0) std::fprintf(stderr, "warning: the kernel %s belongs to no operator, add it to perf/kernel_times.cpp\n", label.c_str());

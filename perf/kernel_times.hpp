@@ -16,8 +16,8 @@ inline const std::array<std::string, 9> operators{"membrane", "contact", "spread
 std::string operator_of(const std::string& label);
 
 struct StepTimes {
-  double step = 0;                         ///< seconds of a step
-  std::map<std::string, double> parts;     ///< seconds of a step in each operator, adding up to `step`
+  double step = 0;                      ///< seconds of a step
+  std::map<std::string, double> parts;  ///< seconds of a step in each operator, adding up to `step`
 };
 
 /// The fastest of `repeats` blocks of `steps` steps. The callbacks synchronise devices after each kernel.

@@ -48,6 +48,15 @@ int count_for(const SuspensionSettings& settings) {
 
 }  // namespace
 
+SuspensionSettings usual_settings(bool quick) {
+  SuspensionSettings s;
+  if (quick) {
+    s.nodes = {32, 32, 32};
+    s.radius = s.subdivision = 4;
+  }
+  return s;
+}
+
 SuspensionCase suspension_case(const SuspensionSettings& settings) { return with_count(settings, count_for(settings)); }
 
 SuspensionCase random_suspension(const SuspensionSettings& settings, double z_from, double z_to) {

@@ -1,5 +1,5 @@
-// The suspensions that benchmarks run on: red cells at random places, or packed. One packed block is repeated where a whole box would take long to pack: to every operator its
-// copies are cells like others.
+// The suspensions that benchmarks run on: red cells at random places, or packed. One packed block is repeated where a whole box would take long to pack: to
+// every operator its copies are cells like others.
 #pragma once
 #include <array>
 #include <vector>
@@ -12,13 +12,16 @@ namespace corpuscle::perf {
 /// What a case varies. Lattice units.
 struct SuspensionSettings {
   std::array<int, 3> nodes{128, 128, 128};
-  double phi = 0.36;            ///< geometric volume fraction
+  double phi = 0.36;  ///< geometric volume fraction
   double radius = 8;
-  int subdivision = 8;          ///< 10 n^2 + 2 vertices
+  int subdivision = 8;  ///< 10 n^2 + 2 vertices
   int points = 4;
   bool walls = true;
   Precision precision = Precision::single_precision, membrane = Precision::double_precision;
 };
+
+/// The dense suspension that most sections use: 946 red cells of 642 vertices; a tiny one in a quick run.
+SuspensionSettings usual_settings(bool quick);
 
 /// Sheared between walls at Ca = 0.1, or at rest without walls.
 struct SuspensionCase {

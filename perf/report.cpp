@@ -14,7 +14,9 @@
 namespace corpuscle::perf {
 
 Section::Section(int argc, char** argv, std::string name, std::string about, std::vector<Metric> metrics)
-    : name_(std::move(name)), about_(std::move(about)), metrics_(std::move(metrics)) {
+    : name_(std::move(name)),
+      about_(std::move(about)),
+      metrics_(std::move(metrics)) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--quick") {
@@ -43,7 +45,8 @@ void Section::row(const std::string& name, const Json& values) {
 int Section::finish() {
   Json better = Json::object();
   for (const auto& metric : metrics_) better[metric.name] = metric.better;
-  const Json section = {{"section", name_}, {"about", about_}, {"notes", notes_}, {"quick", effort_.quick}, {"build", build_description()}, {"better", better}, {"rows", rows_}};
+  const Json section = {{"section", name_}, {"about", about_}, {"notes", notes_}, {"quick", effort_.quick}, {"build", build_description()},
+                        {"better", better}, {"rows", rows_}};
   if (output_.empty()) {
     std::cout << section.dump(1) << std::endl;
     return 0;
@@ -63,7 +66,8 @@ Json build_description() {
           {"flags", CORPUSCLE_FLAGS},
           {"version", version_string()},
           {"revision", git_revision()},
-          {"kokkos_version", std::to_string(KOKKOS_VERSION / 10000) + "." + std::to_string(KOKKOS_VERSION / 100 % 100) + "." + std::to_string(KOKKOS_VERSION % 100)},
+          {"kokkos_version",
+           std::to_string(KOKKOS_VERSION / 10000) + "." + std::to_string(KOKKOS_VERSION / 100 % 100) + "." + std::to_string(KOKKOS_VERSION % 100)},
           {"backend", ExecSpace::name()},
           {"threads", ExecSpace().concurrency()},
           {"kokkos_configuration", configuration.str()}};

@@ -10,9 +10,9 @@ using Json = nlohmann::ordered_json;
 
 /// How much time a benchmark may take.
 struct Effort {
-  bool quick = false;          ///< tiny sizes, one repeat: shows that it runs, says nothing about speed
-  int repeats = 4;             ///< the best of so many
-  double min_seconds = 0.08;   ///< each at least so long
+  bool quick = false;         ///< tiny sizes, one repeat: shows that it runs, says nothing about speed
+  int repeats = 4;            ///< the best of so many
+  double min_seconds = 0.08;  ///< each at least so long
 };
 
 /// A measured quantity that perf/compare.py judges.

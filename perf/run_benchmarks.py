@@ -3,9 +3,11 @@
 
     python perf/run_benchmarks.py PROGRAMS [SECTION ...] [--quick] [--output FILE]
 
-PROGRAMS is the folder of the programs bench_SECTION. Prints a table for each section and writes one JSON file: machine, build, date, load, sections. Needs the standard library only.
+PROGRAMS is the folder of the programs bench_SECTION. Prints a table for each section and writes one JSON file: machine, build, date, load, sections.
+Needs the standard library only.
 `./dev bench` builds the programs, runs this and draws the figures (report/performance.py); perf/compare.py compares two result files.
 """
+
 import argparse
 import datetime
 import json
@@ -40,8 +42,13 @@ def machine():
         if first_line(index / "type") != "Instruction":
             caches["L" + first_line(index / "level")] = first_line(index / "size")
     memory = first_line("/proc/meminfo", "MemTotal").split()
-    return {"cpu": first_line("/proc/cpuinfo", "model name") or platform.processor(), "cores": len(os.sched_getaffinity(0)), "caches": caches,
-            "memory_GiB": round(int(memory[0]) / 2**20, 1) if memory else None, "system": platform.platform()}
+    return {
+        "cpu": first_line("/proc/cpuinfo", "model name") or platform.processor(),
+        "cores": len(os.sched_getaffinity(0)),
+        "caches": caches,
+        "memory_GiB": round(int(memory[0]) / 2**20, 1) if memory else None,
+        "system": platform.platform(),
+    }
 
 
 def load_warning(load, cores):
@@ -75,8 +82,16 @@ def amdahl(section):
             if one[key] < 0.002 * one["step_ms"] or row[key] <= 0:
                 continue  # too short to tell
             speedup = one[key] / row[key]
-            table.append({"case": f"{key[:-3]}, {row['threads']} threads", "operator": key[:-3], "threads": row["threads"], "share": round(one[key] / one["step_ms"], 4),
-                          "speedup": round(speedup, 3), "serial_share": round(min(1.0, max(0.0, (n / speedup - 1) / (n - 1))), 4)})
+            table.append(
+                {
+                    "case": f"{key[:-3]}, {row['threads']} threads",
+                    "operator": key[:-3],
+                    "threads": row["threads"],
+                    "share": round(one[key] / one["step_ms"], 4),
+                    "speedup": round(speedup, 3),
+                    "serial_share": round(min(1.0, max(0.0, (n / speedup - 1) / (n - 1))), 4),
+                }
+            )
     return table
 
 
@@ -127,9 +142,18 @@ def main():
     warning = load_warning(load, here["cores"])
     if warning:
         print(f"warning: {warning}", file=sys.stderr)
-    result = {"corpuscle_benchmarks": 1, "date": now.isoformat(timespec="seconds"), "quick": arguments.quick, "machine": here, "load_average": round(load, 2), "build": None,
-              "threads": None, "environment": {k: v for k, v in sorted(os.environ.items()) if k.startswith(("OMP_", "KOKKOS_"))}, "sections": {}}
-    threads = int(os.environ.get("OMP_NUM_THREADS", here["cores"]))
+    result = {
+        "corpuscle_benchmarks": 1,
+        "date": now.isoformat(timespec="seconds"),
+        "quick": arguments.quick,
+        "machine": here,
+        "load_average": round(load, 2),
+        "build": None,
+        "threads": None,
+        "environment": {k: v for k, v in sorted(os.environ.items()) if k.startswith(("OMP_", "KOKKOS_"))},
+        "sections": {},
+    }
+    threads = int(os.environ.get("OMP_NUM_THREADS", str(here["cores"])).split(",")[0])
     for name in arguments.sections or SECTIONS:
         print(f"== {name}", file=sys.stderr, flush=True)
         section = scaling(arguments.programs, arguments.quick, threads) if name == "scaling" else run_section(arguments.programs, name, arguments.quick)

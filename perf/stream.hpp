@@ -39,7 +39,8 @@ class InPlace {
 class Copy {
  public:
   explicit Copy(double bytes)
-      : grid_(rows_of(std::size_t(bytes) / 2 / sizeof(float))), body_{Array1<float>("copy_from", grid_.padded_nodes()), Array1<float>("copy_to", grid_.padded_nodes())} {}
+      : grid_(rows_of(std::size_t(bytes) / 2 / sizeof(float))),
+        body_{Array1<float>("copy_from", grid_.padded_nodes()), Array1<float>("copy_to", grid_.padded_nodes())} {}
   void operator()() const { lattice_for("copy", grid_, interior(grid_), body_); }
   double traffic() const { return 2.0 * sizeof(float) * double(grid_.nodes()); }
 

@@ -9,7 +9,8 @@
 
 namespace corpuscle::perf {
 
-/// Seconds of one call of each operation: the best of `repeats`. They take turns, so that what slows the machine for a while slows all of them, and their ratios hold.
+/// Seconds of one call of each operation: the best of `repeats`. They take turns, so that what slows the machine for a while slows all of them, and their
+/// ratios hold.
 inline std::vector<double> interleaved_seconds(const std::vector<std::function<void()>>& operations, const Effort& effort) {
   for (const auto& operation : operations) operation();  // first touch, allocation
   std::vector<double> best(operations.size(), 1e30);

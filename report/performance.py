@@ -3,10 +3,12 @@
 
     python report/performance.py BENCH.JSON [--document PAGE]
 
-BENCH.JSON is written by ./dev bench. Without --document the figures performance_*.png are put beside it; with --document docs/performance.md they go to docs/figures/ and the page's
-tables between `<!-- bench: NAME -->` and `<!-- end -->` are made anew from the file; README.md has one such table too. Sections that the file lacks stay as they are.
+BENCH.JSON is written by ./dev bench. Without --document the figures performance_*.png are put beside it; with --document docs/performance.md they go to
+docs/figures/ and the page's tables between `<!-- bench: NAME -->` and `<!-- end -->` are made anew from the file; README.md has one such table too. Sections
+that the file lacks stay as they are.
 Needs: pip install numpy matplotlib.
 """
+
 import argparse
 import json
 import pathlib
@@ -17,7 +19,6 @@ sys.dont_write_bytecode = True
 
 from performance_figures import draw_all  # noqa: E402
 from performance_tables import TABLES  # noqa: E402
-
 
 BLOCK = re.compile(r"^<!-- bench: (\w+) -->\n(.*?)^<!-- end -->$", re.MULTILINE | re.DOTALL)
 
@@ -41,7 +42,9 @@ def fill(page, result):
 def main():
     parser = argparse.ArgumentParser(description="Figures and tables of the benchmarks.")
     parser.add_argument("result", metavar="BENCH.JSON", type=pathlib.Path)
-    parser.add_argument("--document", metavar="PAGE", type=pathlib.Path, help="fill the tables of this page, and put the figures that it shows into figures/ beside it")
+    parser.add_argument(
+        "--document", metavar="PAGE", type=pathlib.Path, help="fill the tables of this page, and put the figures that it shows into figures/ beside it"
+    )
     arguments = parser.parse_args()
     try:
         result = json.loads(arguments.result.read_text(encoding="utf-8"))

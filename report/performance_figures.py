@@ -1,10 +1,12 @@
 """The figures of report/performance.py: roofline, shares of a step, scaling."""
+
 import sys
 
 import performance_counts as counts
 
 try:
     import matplotlib
+
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
@@ -13,16 +15,44 @@ except ImportError as error:
 
 INK, GREY = "#222222", "#666666"
 # Okabe and Ito's palette, in the order of a step
-COLOURS = {"membrane": "#0072B2", "contact": "#CC79A7", "spread": "#E69F00", "collide": "#009E73", "halo": "#56B4E9", "interpolate": "#D55E00", "motion": "#F0E442",
-           "other": "#999999", "outside": "#222222"}
-NAMES = {"membrane": "membrane", "contact": "contact", "spread": "spread", "collide": "collide, stream", "halo": "halo, walls", "interpolate": "interpolate",
-         "motion": "vertex motion", "other": "other kernels", "outside": "outside of kernels"}
+COLOURS = {
+    "membrane": "#0072B2",
+    "contact": "#CC79A7",
+    "spread": "#E69F00",
+    "collide": "#009E73",
+    "halo": "#56B4E9",
+    "interpolate": "#D55E00",
+    "motion": "#F0E442",
+    "other": "#999999",
+    "outside": "#222222",
+}
+NAMES = {
+    "membrane": "membrane",
+    "contact": "contact",
+    "spread": "spread",
+    "collide": "collide, stream",
+    "halo": "halo, walls",
+    "interpolate": "interpolate",
+    "motion": "vertex motion",
+    "other": "other kernels",
+    "outside": "outside of kernels",
+}
 MARKERS = {"collide": "s", "spread": "^", "interpolate": "v", "membrane": "o"}
 
 
 def style():
-    plt.rcParams.update({"font.size": 10.5, "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
-                         "axes.spines.right": False})
+    plt.rcParams.update(
+        {
+            "font.size": 10.5,
+            "text.color": INK,
+            "axes.labelcolor": INK,
+            "axes.edgecolor": INK,
+            "xtick.color": INK,
+            "ytick.color": INK,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+        }
+    )
 
 
 def row_of(section, case):
@@ -65,8 +95,15 @@ def annotate_apart(axes, labelled):
         while any(abs(py + shift - ty) < 9 and px < tx + 5.0 * len(t) and tx < px + 5.0 * len(text) for tx, ty, t in taken):
             shift -= 1
         taken.append((px, py + shift, text))
-        axes.annotate(text, (x, y), xytext=(8, shift - 3), textcoords="offset points", fontsize=8, color=INK,
-                      arrowprops={"arrowstyle": "-", "color": "#BBBBBB", "linewidth": 0.6} if shift < -6 else None)
+        axes.annotate(
+            text,
+            (x, y),
+            xytext=(8, shift - 3),
+            textcoords="offset points",
+            fontsize=8,
+            color=INK,
+            arrowprops={"arrowstyle": "-", "color": "#BBBBBB", "linewidth": 0.6} if shift < -6 else None,
+        )
 
 
 def roofline(sections, path):
@@ -78,14 +115,25 @@ def roofline(sections, path):
         peak = peaks[f"peak, {name}"]
         x = np.geomspace(0.3, 200, 200)
         for row, line in ((bandwidth[-1], "-"), (bandwidth[min(1, len(bandwidth) - 1)], "--")):
-            axes.plot(x, np.minimum(row["in_place_GB_s"] * x, peak), line, color=INK, linewidth=1.2, label=f"in place, {row['case']}: {row['in_place_GB_s']:.0f} GB/s")
+            axes.plot(
+                x, np.minimum(row["in_place_GB_s"] * x, peak), line, color=INK, linewidth=1.2, label=f"in place, {row['case']}: {row['in_place_GB_s']:.0f} GB/s"
+            )
         axes.plot([], [], " ", label=f"peak of multiply-adds: {peak:.0f} GFLOPS")
         axes.set(xscale="log", yscale="log", xlabel="flops a byte, counted", title=f"{name}", xlim=(0.3, 200))
         own = [p for p in points if p[2] == real]
         for operator in MARKERS:
             chosen = [p for p in own if p[0] == operator]
-            axes.plot([p[3] for p in chosen], [p[4] for p in chosen], MARKERS[operator], color=COLOURS[operator], markersize=8, markeredgecolor=INK, markeredgewidth=0.6, linestyle="none",
-                      label=NAMES[operator])
+            axes.plot(
+                [p[3] for p in chosen],
+                [p[4] for p in chosen],
+                MARKERS[operator],
+                color=COLOURS[operator],
+                markersize=8,
+                markeredgecolor=INK,
+                markeredgewidth=0.6,
+                linestyle="none",
+                label=NAMES[operator],
+            )
         axes.grid(color="#DDDDDD", linewidth=0.6)
         axes.set_axisbelow(True)
     lowest = min(p[4] for p in points)
@@ -108,7 +156,15 @@ def shares(sections, path):
             width = 100 * row[f"{name}_ms"] / row["step_ms"]
             axes.barh(i, width, left=left, color=COLOURS[name], edgecolor="white", linewidth=0.6, height=0.72, label=NAMES[name] if i == 0 else None)
             if width > 5:
-                axes.text(left + width / 2, i, f"{width:.0f}", ha="center", va="center", fontsize=9, color=INK if name in ("spread", "motion", "halo", "contact") else "white")
+                axes.text(
+                    left + width / 2,
+                    i,
+                    f"{width:.0f}",
+                    ha="center",
+                    va="center",
+                    fontsize=9,
+                    color=INK if name in ("spread", "motion", "halo", "contact") else "white",
+                )
             left += width
         axes.text(101, i, f"{row['step_ms']:.1f} ms, {row['MLUPS']:.1f} MLUPS", va="center", fontsize=9)
     axes.set_yticks(range(len(rows)), [row["case"] + ("" if row["contact"] else "*") for row in rows])
@@ -131,8 +187,16 @@ def scaling(sections, path):
         left.plot(threads, threads, color="#888888", linewidth=1, linestyle=":", label="ideal")
         left.plot(threads, [one["step_ms"] / row["step_ms"] for row in rows], "D-", color=INK, label="whole step")
         for name, marker in zip(long_enough, "osv^P<>"):
-            left.plot(threads, [one[f"{name}_ms"] / row[f"{name}_ms"] for row in rows], marker + "-", color=COLOURS[name], markeredgecolor=INK, markeredgewidth=0.5, linewidth=1.2,
-                      label=NAMES[name])
+            left.plot(
+                threads,
+                [one[f"{name}_ms"] / row[f"{name}_ms"] for row in rows],
+                marker + "-",
+                color=COLOURS[name],
+                markeredgecolor=INK,
+                markeredgewidth=0.5,
+                linewidth=1.2,
+                label=NAMES[name],
+            )
         left.set_xticks(threads, [str(n) for n in threads])
         left.set(xlabel="threads", ylabel="speedup against one thread", ylim=(0, None))
         left.legend(frameon=False, fontsize=8.5, loc="upper left")
@@ -148,7 +212,16 @@ def scaling(sections, path):
     rows = sections["growth"]["rows"]
     cells = [row["cells"] for row in rows]
     for name, marker in zip(("membrane", "contact", "spread", "collide", "halo", "interpolate"), "osv^P<"):
-        right.plot(cells, [1e3 * row[f"{name}_ms"] / row["cells"] for row in rows], marker + "-", color=COLOURS[name], markeredgecolor=INK, markeredgewidth=0.5, linewidth=1.2, label=NAMES[name])
+        right.plot(
+            cells,
+            [1e3 * row[f"{name}_ms"] / row["cells"] for row in rows],
+            marker + "-",
+            color=COLOURS[name],
+            markeredgecolor=INK,
+            markeredgewidth=0.5,
+            linewidth=1.2,
+            label=NAMES[name],
+        )
     right.plot(cells, [row["us_per_cell"] for row in rows], "D-", color=INK, label="whole step")
     right.set(xscale="log", yscale="log", xlabel="cells", ylabel="µs a step and cell", title="cost of a cell, the same packing repeated")
     right.set_xticks(cells, [str(n) for n in cells])

@@ -38,7 +38,9 @@ def numbers(value):
 
 runner = load(source / "perf/run_benchmarks.py")
 # Amdahl: half of the work serial, 1/S = 1/2 + 1/4 for two threads.
-table = runner.amdahl({"rows": [{"threads": 1, "step_ms": 10.0, "spread_ms": 8.0, "halo_ms": 2.0}, {"threads": 2, "step_ms": 7.0, "spread_ms": 6.0, "halo_ms": 1.0}]})
+table = runner.amdahl(
+    {"rows": [{"threads": 1, "step_ms": 10.0, "spread_ms": 8.0, "halo_ms": 2.0}, {"threads": 2, "step_ms": 7.0, "spread_ms": 6.0, "halo_ms": 1.0}]}
+)
 found = {row["operator"]: row for row in table}
 check(abs(found["spread"]["speedup"] - 4 / 3) < 1e-3 and abs(found["spread"]["serial_share"] - 0.5) < 1e-3, "serial share of half the work")
 check(found["halo"]["serial_share"] == 0 and found["halo"]["share"] == 0.2, "no serial share at the ideal speedup")
@@ -46,8 +48,12 @@ check(runner.load_warning(0.1, 2) is None and "not idle" in runner.load_warning(
 
 with tempfile.TemporaryDirectory() as folder:
     output = pathlib.Path(folder) / "bench.json"
-    done = subprocess.run([sys.executable, str(source / "perf/run_benchmarks.py"), str(program.parent.parent / "perf"), "--quick", "--output", str(output)], capture_output=True, text=True,
-                          env={**os.environ, "OMP_WAIT_POLICY": "passive"})  # tests share their cores
+    done = subprocess.run(
+        [sys.executable, str(source / "perf/run_benchmarks.py"), str(program.parent.parent / "perf"), "--quick", "--output", str(output)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "OMP_WAIT_POLICY": "passive"},
+    )  # tests share their cores
     check(done.returncode == 0, f"the benchmarks run:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
     check("belongs to no operator" not in done.stderr, f"every kernel of a step is counted:\n{done.stderr}")
     result = json.loads(output.read_text())

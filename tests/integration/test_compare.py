@@ -19,12 +19,21 @@ def check(condition, message):
 
 
 BASE = {
-    "corpuscle_benchmarks": 1, "quick": False, "machine": {"cpu": "A processor", "cores": 2}, "threads": 2, "load_average": 0.0,
+    "corpuscle_benchmarks": 1,
+    "quick": False,
+    "machine": {"cpu": "A processor", "cores": 2},
+    "threads": 2,
+    "load_average": 0.0,
     "build": {"compiler": "GNU 12.2.0", "backend": "OpenMP"},
     "sections": {
-        "fluid": {"better": {"MLUPS": "higher"}, "rows": [{"case": "float", "MLUPS": 300.0, "fraction": 0.9}, {"case": "double", "MLUPS": 150.0, "fraction": 0.9}]},
-        "step": {"better": {"MLUPS": "higher", "spread_ms": "lower", "motion_ms": "lower"},
-                 "rows": [{"case": "dense", "MLUPS": 40.0, "step_ms": 50.0, "spread_ms": 20.0, "motion_ms": 0.3}]},
+        "fluid": {
+            "better": {"MLUPS": "higher"},
+            "rows": [{"case": "float", "MLUPS": 300.0, "fraction": 0.9}, {"case": "double", "MLUPS": 150.0, "fraction": 0.9}],
+        },
+        "step": {
+            "better": {"MLUPS": "higher", "spread_ms": "lower", "motion_ms": "lower"},
+            "rows": [{"case": "dense", "MLUPS": 40.0, "step_ms": 50.0, "spread_ms": 20.0, "motion_ms": 0.3}],
+        },
     },
 }
 
@@ -76,6 +85,7 @@ with tempfile.TemporaryDirectory() as folder:
         r["sections"]["fluid"]["rows"].pop()
         r["sections"]["fluid"]["rows"].append({"case": "TRT", "MLUPS": 1.0})
         r["sections"]["memory"] = {"better": {"MiB": "lower"}, "rows": [{"case": "all", "MiB": 3.0}]}
+
     missing = compare(changed(fewer))
     check(missing.returncode == 0, "missing cases are told, not judged")
     for text in ("Only in the old file", "step: dense", "fluid: double", "Only in the new file", "fluid: TRT", "memory: all", "1 numbers compared"):
@@ -85,8 +95,12 @@ with tempfile.TemporaryDirectory() as folder:
         r["machine"]["cpu"] = "Another"
         r["threads"] = 4
         r["load_average"] = 1.5
+
     other = compare(changed(elsewhere))
-    check(other.returncode == 0 and "differ in processor (A processor, then Another)" in other.stderr and "differ in threads (2, then 4)" in other.stderr, f"another machine:\n{other.stderr}")
+    check(
+        other.returncode == 0 and "differ in processor (A processor, then Another)" in other.stderr and "differ in threads (2, then 4)" in other.stderr,
+        f"another machine:\n{other.stderr}",
+    )
     check("the new file was measured on a busy machine" in other.stderr, "a busy machine is told")
 
     broken = compare('{"sections": ')
