@@ -1,4 +1,6 @@
 // Bandwidth of copy and in-place update over the size of the arrays, and the arithmetic peak: the roofs of the roofline.
+#include <fmt/format.h>
+
 #include "perf/report.hpp"
 #include "perf/stream.hpp"
 #include "perf/timing.hpp"
@@ -49,7 +51,7 @@ int main(int argc, char** argv) {
     const InPlace update(bytes);
     const Copy copy(bytes);
     const auto seconds = interleaved_seconds({update, copy}, section.effort());
-    section.row(Json(mebibytes).dump() + " MiB",
+    section.row(fmt::format("{:g} MiB", mebibytes),
                 {{"MiB", mebibytes}, {"in_place_GB_s", update.traffic() / seconds[0] / 1e9}, {"copy_GB_s", copy.traffic() / seconds[1] / 1e9}});
   }
   peak<float>(section, "peak, float");

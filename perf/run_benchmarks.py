@@ -20,7 +20,7 @@ import tempfile
 import time
 
 SECTIONS = ["bandwidth", "fluid", "coupling", "membrane", "contact", "step", "scaling", "growth", "memory"]
-BUSY = 0.25  # load per core from which on timings say little
+BUSY = 0.05  # share of the cores that other processes may use before timings say little
 
 
 def first_line(path, key=None):
@@ -51,10 +51,35 @@ def machine():
     }
 
 
-def load_warning(load, cores):
-    if load <= BUSY * cores:
+def core_seconds():
+    """(used by all processes, used by the benchmarks so far); the first is None where the system doesn't say."""
+    times = os.times()
+    own = times.user + times.system + times.children_user + times.children_system
+    try:
+        user, nice, system = map(int, pathlib.Path("/proc/stat").read_text().split()[1:4])
+    except (OSError, ValueError):
+        return None, own
+    return (user + nice + system) / os.sysconf("SC_CLK_TCK"), own
+
+
+def foreign_load(before, after, seconds, cores):
+    """Share of the cores that other processes used between two calls of core_seconds; 0 where it isn't known."""
+    if before[0] is None or after[0] is None or seconds <= 0:
+        return 0.0
+    return max(0.0, (after[0] - before[0]) - (after[1] - before[1])) / (seconds * cores)
+
+
+def busy_warning(share):
+    if share <= BUSY:
         return None
-    return f"the machine is not idle (load average {load:.2f} on {cores} cores): timings are too long, and ratios uncertain"
+    return f"the machine is not idle (other processes use {100 * share:.0f} % of its cores): timings are too long, and ratios uncertain"
+
+
+def present_load(cores):
+    """Sampled, as the load average remembers the compilation of the benchmarks for minutes."""
+    before = core_seconds()
+    time.sleep(1)
+    return foreign_load(before, core_seconds(), 1, cores)
 
 
 def run_section(programs, name, quick, environment=None):
@@ -63,12 +88,14 @@ def run_section(programs, name, quick, environment=None):
         sys.exit(f"{program} does not exist: build it first, with ./dev bench or the target bench_{name}.")
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "section.json"
-        started = time.monotonic()
+        started, before = time.monotonic(), core_seconds()
         done = subprocess.run([str(program), "--output", str(output)] + (["--quick"] if quick else []), env={**os.environ, **(environment or {})})
         if done.returncode != 0:
             sys.exit(f"bench_{name} stopped with exit code {done.returncode}.")
         section = json.loads(output.read_text())
-    section["seconds"] = round(time.monotonic() - started, 1)
+    seconds = time.monotonic() - started
+    section["seconds"] = round(seconds, 1)
+    section["foreign_load"] = round(foreign_load(before, core_seconds(), seconds, len(os.sched_getaffinity(0))), 3)
     return section
 
 
@@ -103,6 +130,7 @@ def scaling(programs, quick, threads):
     section["rows"] = [row for part in parts for row in part["rows"]]
     section["amdahl"] = amdahl(section)
     section["seconds"] = round(sum(part["seconds"] for part in parts), 1)
+    section["foreign_load"] = max(part["foreign_load"] for part in parts)
     return section
 
 
@@ -123,6 +151,11 @@ def text_table(rows):
     return "\n".join("  ".join(cell.ljust(w) if i == 0 else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths))).rstrip() for line in shown)
 
 
+def warn(text):
+    if text:
+        print(f"warning: {text}", file=sys.stderr, flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description="Runs the benchmarks and merges their sections into one result file.")
     parser.add_argument("programs", type=pathlib.Path, help="folder of the programs bench_SECTION")
@@ -138,16 +171,14 @@ def main():
     output.parent.mkdir(parents=True, exist_ok=True)
 
     here = machine()
-    load = os.getloadavg()[0]
-    warning = load_warning(load, here["cores"])
-    if warning:
-        print(f"warning: {warning}", file=sys.stderr)
+    warn(busy_warning(present_load(here["cores"])))
     result = {
         "corpuscle_benchmarks": 1,
         "date": now.isoformat(timespec="seconds"),
         "quick": arguments.quick,
         "machine": here,
-        "load_average": round(load, 2),
+        "load_average": round(os.getloadavg()[0], 2),
+        "busy": False,
         "build": None,
         "threads": None,
         "environment": {k: v for k, v in sorted(os.environ.items()) if k.startswith(("OMP_", "KOKKOS_"))},
@@ -163,15 +194,16 @@ def main():
         elif (build["revision"], build["compiler"], build["flags"]) != tuple(result["build"][k] for k in ("revision", "compiler", "flags")):
             sys.exit(f"bench_{name} was built from another revision or with other flags than the sections before: build all of them again.")
         result["sections"][section.pop("section")] = section
+        if section["seconds"] >= 1:  # processor time is counted in hundredths of a second
+            result["busy"] = result["busy"] or section["foreign_load"] > BUSY
         print(f"\n{name}: {section['about']}\n{text_table(section['rows'])}")
         for note in section["notes"]:
             print(note)
         if "amdahl" in section:
             print(f"\nAmdahl: speedup and the serial share that follows\n{text_table(section['amdahl'])}")
-        print(f"({section['seconds']} s)\n", flush=True)
+        print(f"({section['seconds']} s, other processes used {100 * section['foreign_load']:.0f} % of the cores)\n", flush=True)
         write(output, result)  # at once: a section that fails loses nothing but itself
-    if warning:
-        print(f"warning: {warning}", file=sys.stderr)
+    warn(busy_warning(max((section["foreign_load"] for section in result["sections"].values()), default=0)) if result["busy"] else None)
     print(output)
 
 

@@ -87,23 +87,22 @@ def roofline_points(sections):
 
 
 def annotate_apart(axes, labelled):
-    """Labels right of their points; where two would cover each other the lower one gives way downwards. Positions in points of the page."""
-    taken = []
-    for x, y, text in sorted(labelled, key=lambda p: -p[1]):
-        px, py = axes.transData.transform((x, y)) * 72 / axes.figure.dpi
-        shift = 0
-        while any(abs(py + shift - ty) < 9 and px < tx + 5.0 * len(t) and tx < px + 5.0 * len(text) for tx, ty, t in taken):
-            shift -= 1
-        taken.append((px, py + shift, text))
-        axes.annotate(
-            text,
-            (x, y),
-            xytext=(8, shift - 3),
-            textcoords="offset points",
-            fontsize=8,
-            color=INK,
-            arrowprops={"arrowstyle": "-", "color": "#BBBBBB", "linewidth": 0.6} if shift < -6 else None,
-        )
+    """Labels beside their points, each at the first place around its point where it covers neither a point nor another label."""
+    scale = 72 / axes.figure.dpi
+    points = [tuple(axes.transData.transform((x, y)) * scale) for x, y, _ in labelled]
+    taken = [(px - 5, py - 5, px + 5, py + 5) for px, py in points]  # left, bottom, right, top in points of the page
+
+    def is_free(box):
+        return all(box[2] < t[0] or t[2] < box[0] or box[3] < t[1] or t[3] < box[1] for t in taken)
+
+    for (px, py), (x, y, text) in sorted(zip(points, labelled), key=lambda p: -p[0][1]):
+        width, height = 4.6 * len(text), 9
+        beside = [(9, -height / 2), (-9 - width, -height / 2), (-width / 2, 8), (-width / 2, -8 - height)]
+        further = [(dx, d) for d in (14, -23, 26, -35, 38, -47, 50, -59) for dx in (9, -9 - width)]
+        dx, dy = next(((dx, dy) for dx, dy in beside + further if is_free((px + dx, py + dy, px + dx + width, py + dy + height))), beside[0])
+        taken.append((px + dx, py + dy, px + dx + width, py + dy + height))
+        line = {"arrowstyle": "-", "color": "#999999", "linewidth": 0.6, "shrinkB": 4} if (dx, dy) in further else None
+        axes.annotate(text, (x, y), xytext=(dx, dy + 1), textcoords="offset points", fontsize=8, color=INK, arrowprops=line)
 
 
 def roofline(sections, path):
@@ -113,13 +112,13 @@ def roofline(sections, path):
     figure, panels = plt.subplots(1, 2, figsize=(13, 6), dpi=150, layout="constrained", sharex=True, sharey=True)
     for axes, real, name in ((panels[0], 4, "float"), (panels[1], 8, "double")):
         peak = peaks[f"peak, {name}"]
-        x = np.geomspace(0.3, 200, 200)
+        x = np.geomspace(0.15, 200, 200)
         for row, line in ((bandwidth[-1], "-"), (bandwidth[min(1, len(bandwidth) - 1)], "--")):
             axes.plot(
                 x, np.minimum(row["in_place_GB_s"] * x, peak), line, color=INK, linewidth=1.2, label=f"in place, {row['case']}: {row['in_place_GB_s']:.0f} GB/s"
             )
         axes.plot([], [], " ", label=f"peak of multiply-adds: {peak:.0f} GFLOPS")
-        axes.set(xscale="log", yscale="log", xlabel="flops a byte, counted", title=f"{name}", xlim=(0.3, 200))
+        axes.set(xscale="log", yscale="log", xlabel="flops a byte, counted", title=f"{name}", xlim=(0.15, 200))
         own = [p for p in points if p[2] == real]
         for operator in MARKERS:
             chosen = [p for p in own if p[0] == operator]

@@ -44,7 +44,9 @@ table = runner.amdahl(
 found = {row["operator"]: row for row in table}
 check(abs(found["spread"]["speedup"] - 4 / 3) < 1e-3 and abs(found["spread"]["serial_share"] - 0.5) < 1e-3, "serial share of half the work")
 check(found["halo"]["serial_share"] == 0 and found["halo"]["share"] == 0.2, "no serial share at the ideal speedup")
-check(runner.load_warning(0.1, 2) is None and "not idle" in runner.load_warning(1.0, 2), "a busy machine is told")
+check(runner.busy_warning(0.01) is None and "not idle" in runner.busy_warning(0.5), "a busy machine is told")
+# 10 s on 2 cores: 15 core seconds used, 11 of them by the benchmarks.
+check(abs(runner.foreign_load((100.0, 1.0), (115.0, 12.0), 10, 2) - 0.2) < 1e-9, "what other processes used")
 
 with tempfile.TemporaryDirectory() as folder:
     output = pathlib.Path(folder) / "bench.json"
