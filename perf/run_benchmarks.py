@@ -66,7 +66,7 @@ def foreign_load(before, after, seconds, cores):
     """Share of the cores that other processes used between two calls of core_seconds; 0 where it isn't known."""
     if before[0] is None or after[0] is None or seconds <= 0:
         return 0.0
-    return max(0.0, (after[0] - before[0]) - (after[1] - before[1])) / (seconds * cores)
+    return min(1.0, max(0.0, (after[0] - before[0]) - (after[1] - before[1])) / (seconds * cores))
 
 
 def busy_warning(share):
