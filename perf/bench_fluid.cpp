@@ -1,77 +1,86 @@
-// Fluid-only speed: MLUPS, bytes a node and the fraction of the measured bandwidth of an in-place update of the same size.
-#include <cstdio>
-#include <cstdlib>
+// The fluid alone: MLUPS, bytes a node and the fraction of the bandwidth of an in-place update of the same size, which takes turns with it.
+#include <fmt/format.h>
 
-#include "core/lattice_for.hpp"
+#include "perf/report.hpp"
+#include "perf/stream.hpp"
+#include "perf/timing.hpp"
 #include "physics/fluid.hpp"
 
 using namespace corpuscle;
+using namespace corpuscle::perf;
 
 namespace {
 
-/// x[i] = a x[i] + b: the traffic pattern of in-place streaming.
-struct UpdateInPlace {
-  Array1<float> x;
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(const int i) const { x(i) = 0.5f * x(i) + 1.0f; }
+struct Variant {
+  bool single, trt, walls, force;
+  std::string name() const {
+    return fmt::format("{} {} {}{}", single ? "float" : "double", trt ? "TRT" : "BGK", walls ? "walls" : "periodic", force ? " force" : "");
+  }
 };
 
-/// GB/s (read + write) of an in-place update of 256 MiB, by the same loop as the lattice kernels.
-double in_place_bandwidth() {
-  const Grid grid{4096, 128, 128, 0};
-  const UpdateInPlace body{Array1<float>("x", grid.padded_nodes())};
-  double best = 0;
-  for (int repeat = 0; repeat < 7; ++repeat) {
-    Kokkos::fence();
-    Kokkos::Timer timer;
-    lattice_for("in_place", grid, interior(grid), body);
-    Kokkos::fence();
-    best = std::max(best, 2.0 * double(grid.nodes()) * sizeof(float) / timer.seconds() / 1e9);
-  }
-  return best;
-}
-
 template <class Real>
-void measure(const char* name, std::array<int, 3> nodes, CollisionKind collision, bool walls, bool force, double bandwidth) {
+void measure(Section& section, const Variant& v, std::array<int, 3> nodes) {
   FluidParameters p;
   p.nodes = nodes;
-  p.collision = collision;
-  p.walls = walls;
-  p.needs_force = force;
-  p.halo = force ? 2 : 1;
+  p.collision = v.trt ? CollisionKind::trt : CollisionKind::bgk;
+  p.walls = v.walls;
+  p.needs_force = v.force;
+  p.halo = v.force ? 2 : 1;
   p.relaxation_time = 0.9;
+  const double count = double(nodes[0]) * nodes[1] * nodes[2];
+  // Populations are read and written once; force read and cleared, velocity written (four components each).
+  const double traffic = sizeof(Real) * (38.0 + (v.force ? 12.0 : 0.0));
+  if (count * sizeof(Real) * 60 > 0.8 * available_bytes()) {
+    section.note(fmt::format("{}, {} x {} x {}: left out, not enough memory", v.name(), nodes[0], nodes[1], nodes[2]));
+    return;
+  }
   Fluid<Real> fluid(p);
   fluid.initialise();
-  const double count = double(nodes[0]) * nodes[1] * nodes[2];
-  const int steps = std::max(4, int(4e7 / count)) & ~1;
-  double best = 1e30;
-  for (int repeat = 0; repeat < 5; ++repeat) {
-    Kokkos::fence();
-    Kokkos::Timer timer;
-    for (int i = 0; i < steps; ++i) {
-      if (force) fluid.scatter_force();
+  const InPlace update(count * sizeof(Real) * (19 + (v.force ? 8 : 0)));
+  const auto step = [&] {
+    for (int parity = 0; parity < 2; ++parity) {
+      if (v.force) fluid.scatter_force();
       fluid.collide_stream();
-      if (force) fluid.gather_velocity();
+      if (v.force) fluid.gather_velocity();
     }
-    Kokkos::fence();
-    best = std::min(best, timer.seconds() / steps);
-  }
-  const double traffic = 38 * sizeof(Real) + (force ? 12 * sizeof(Real) : 0);  // force read and cleared, velocity written
-  std::printf("  - {case: %-28s, nodes: [%3d, %3d, %3d], mlups: %7.1f, bytes_per_node: %5.1f, traffic: %3.0f, bandwidth_fraction: %.2f}\n", name,
-              nodes[0], nodes[1], nodes[2], count / best / 1e6, double(fluid.bytes()) / count, traffic, count / best * traffic / 1e9 / bandwidth);
+  };
+  const auto seconds = interleaved_seconds({step, update}, section.effort());
+  const double rate = 2 * count / seconds[0], bandwidth = update.traffic() / seconds[1];
+  const std::string title = fmt::format("{}, {} x {} x {}", v.name(), nodes[0], nodes[1], nodes[2]);
+  section.row(title, {{"model", v.name()},
+                      {"nodes", nodes},
+                      {"MLUPS", rate / 1e6},
+                      {"bytes_per_node", double(fluid.bytes()) / count},
+                      {"traffic_B", traffic},
+                      {"in_place_GB_s", bandwidth / 1e9},
+                      {"fraction", rate * traffic / bandwidth}});
+}
+
+void measure(Section& section, const Variant& v, std::array<int, 3> nodes) {
+  if (v.single)
+    measure<float>(section, v, nodes);
+  else
+    measure<double>(section, v, nodes);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  Section section(argc, argv, "fluid", "Fluid alone. fraction: traffic over that of an in-place update of as many bytes, measured in turns.",
+                  {{"MLUPS", "higher"}});
   Kokkos::ScopeGuard scope(argc, argv);
-  const double bandwidth = in_place_bandwidth();
-  std::printf("in_place_bandwidth_GB_s: %.1f\nthreads: %d\nfluid:\n", bandwidth, ExecSpace().concurrency());
-  for (const auto nodes : {std::array{64, 64, 64}, std::array{128, 126, 126}, std::array{180, 90, 90}, std::array{200, 200, 200}}) {
-    measure<float>("float bgk periodic", nodes, CollisionKind::bgk, false, false, bandwidth);
-    measure<float>("float trt periodic", nodes, CollisionKind::trt, false, false, bandwidth);
-    measure<float>("float bgk walls", nodes, CollisionKind::bgk, true, false, bandwidth);
-    measure<float>("float bgk walls force", nodes, CollisionKind::bgk, true, true, bandwidth);
-    measure<double>("double bgk periodic", nodes, CollisionKind::bgk, false, false, bandwidth);
-    measure<double>("double bgk walls force", nodes, CollisionKind::bgk, true, true, bandwidth);
-  }
+  const std::array<int, 3> base = section.effort().quick ? std::array{16, 12, 10} : std::array{128, 128, 128};
+  for (const bool single : {true, false})
+    for (const bool trt : {false, true})
+      for (const auto& [walls, force] : {std::pair{false, false}, {true, false}, {true, true}}) measure(section, {single, trt, walls, force}, base);
+  if (section.effort().quick) return section.finish();
+  // From the caches to 256^3, powers of two and others; then rows of 32 to 400 nodes, about 2 M nodes each.
+  const std::vector<std::array<int, 3>> sizes{{32, 32, 32},   {64, 64, 64},   {100, 100, 100}, {127, 129, 125}, {180, 90, 90}, {200, 200, 200}, {256, 256, 256},
+                                              {32, 256, 256}, {48, 208, 208}, {63, 181, 183},  {96, 148, 148},  {250, 92, 92}, {400, 72, 72}};
+  for (const auto& nodes : sizes)
+    for (const bool single : {true, false}) {
+      measure(section, {single, false, false, false}, nodes);
+      measure(section, {single, false, true, true}, nodes);
+    }
+  return section.finish();
 }

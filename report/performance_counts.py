@@ -1,0 +1,30 @@
+"""Arithmetic and traffic of the kernels, counted in the source: what the roofline needs besides the measured rates.
+
+Additions, multiplications, divisions and square roots count one each. Bytes are what must move between memory and core at least once; what stays in a
+cache between two uses counts once.
+
+collide (a node): macroscopic moments 47, equilibrium and relaxation of rest and nine pairs 172; Guo force 83 more. 19 populations read and written; with a
+    force field 4 numbers read and cleared, 4 velocities written.
+spread (a marker), w-point kernel: weights 60, row 4w, w^2 rows of one weight and 4w multiply-adds. Position and force (48 bytes), key and order (12); each
+    force node read and written once, shared by the markers of the box.
+interpolate (a marker): the same multiply-adds, 6w for the last sum. Position and velocity (48 bytes); each velocity node read once.
+membrane (a vertex of degree 6): strain 76, global tension 24, bending 151 (an angle counts 25) for each triangle; two faces' area and volume 60.
+    Position and force, 48 bytes.
+"""
+
+
+def collide(real, force):
+    """(flops, bytes) a node; real: bytes of a number."""
+    return 219 + (83 if force else 0), real * (38 + (12 if force else 0))
+
+
+def spread(points, real, nodes_per_marker):
+    return 60 + 4 * points + points**2 * (1 + 8 * points), 48 + 12 + nodes_per_marker * 8 * real
+
+
+def interpolate(points, real, nodes_per_marker):
+    return 60 + 6 * points + points**2 * (1 + 8 * points), 48 + nodes_per_marker * 4 * real
+
+
+def membrane(bending, global_terms):
+    return 6 * (76 + 24 + (151 if bending else 0)) + (60 if global_terms else 0), 48
