@@ -218,7 +218,8 @@ Contact::Contact(const PeriodicBox& box, const ContactParameters& parameters, co
       first_vertex_(first_vertices(cell_of_vertex)),
       keys_("contact_keys", cell_of_vertex.extent(0)),
       grid_(box.length, parameters.range + parameters.skin),
-      binned_{Array2<float>("contact_binned", 3, cell_of_vertex.extent(0) + BinnedVertices::lanes), Array1<int>("contact_binned_cell", cell_of_vertex.extent(0) + BinnedVertices::lanes)},
+      binned_{Array2<float>("contact_binned", 3, cell_of_vertex.extent(0) + BinnedVertices::lanes),
+              Array1<int>("contact_binned_cell", cell_of_vertex.extent(0) + BinnedVertices::lanes)},
       built_at_("contact_built_at", cell_of_vertex.extent(0)) {
   rows_.begin = Array1<int>("contact_begin", cell_of_vertex.extent(0) + 1);
 }
@@ -282,7 +283,8 @@ double Contact::smallest_gap(const VertexVectors& positions) {
 }
 
 std::size_t Contact::bytes() const {
-  return (first_vertex_.span() + binned_.cell.span() + keys_.span() + rows_.begin.span() + rows_.list.span()) * sizeof(int) + built_at_.span() * sizeof(double) + binned_.place.span() * sizeof(float) + bins_.bytes();
+  return (first_vertex_.span() + binned_.cell.span() + keys_.span() + rows_.begin.span() + rows_.list.span()) * sizeof(int) +
+         built_at_.span() * sizeof(double) + binned_.place.span() * sizeof(float) + bins_.bytes();
 }
 
 }  // namespace corpuscle
