@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/best_seconds.hpp"
+#include "physics/contact.hpp"
 #include "physics/fluid.hpp"
 #include "physics/placement.hpp"
 #include "physics/suspension.hpp"
@@ -28,6 +29,34 @@ double fluid_seconds(const FluidParameters& parameters) {
   });
 }
 
+/// Largest extent of the shapes along z, in which cells lie flat.
+double largest_height(const std::vector<CellType>& types) {
+  double height = 0;
+  for (const auto& type : types) {
+    double low = 0, high = 0;
+    for (const auto& x : type.reference.vertices) low = std::min(low, x[2]), high = std::max(high, x[2]);
+    height = std::max(height, high - low);
+  }
+  return height;
+}
+
+/// Seconds a step of the searches for neighbours: what one takes beyond the forces, times how often the fastest vertices leave the skin.
+double search_seconds(const LatticeParameters& lattice, const Cells& cells) {
+  ContactParameters parameters;
+  parameters.strength = lattice.contact_strength;
+  parameters.range = lattice.contact_range;
+  const PeriodicBox box(Grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], 1}, false);
+  Contact contact(box, parameters, cells.cell_of_vertex());
+  auto moved = cells.positions_host();
+  for (double& x : moved) x += parameters.skin;
+  const VertexVectors here = cells.positions(), there = to_device(moved);
+  const double with_search = best_seconds([&] { contact.add_forces(here, cells.forces()), contact.add_forces(there, cells.forces()); }, 2) / 2;
+  contact.add_forces(here, cells.forces());
+  const double without = best_seconds([&] { contact.add_forces(here, cells.forces()); }, 2);
+  const double fastest = lattice.mach_number * speed_of_sound;
+  return std::max(0.0, with_search - without) * std::min(1.0, fastest / (0.5 * parameters.skin));
+}
+
 }  // namespace
 
 Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) {
@@ -47,7 +76,7 @@ Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) 
   result.per_node = fluid(nodes) / (double(nodes[0]) * nodes[1] * nodes[2]);
   if (problem.cells.empty()) return result;
 
-  // A few cells of each type side by side, flat, just not touching, in a box of their own.
+  // A few cells of each type side by side, flat, in layers as far apart as the volume fraction asks for, just not touching, in a box of their own.
   Problem small = problem;
   LatticeParameters small_lattice = lattice;
   const int along = 4, layers = 4;
@@ -55,8 +84,11 @@ Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) 
   small.box.walls = false;
   small.flow.kind = FlowKind::rest;
   small_lattice.body_force = 0;
-  double all_cells = 0;
-  for (const auto& type : lattice.cells) all_cells += double(type.count);
+  double all_cells = 0, cell_volume = 0;
+  for (const auto& type : lattice.cells) {
+    all_cells += double(type.count);
+    cell_volume += double(type.count) * type.volume;
+  }
   std::int64_t vertices = 0, cells = 0;
   for (auto& type : small_lattice.cells) {
     const double share = double(type.count) / std::max(1.0, all_cells);
@@ -65,20 +97,25 @@ Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) 
     cells += type.count;
   }
   const std::int64_t stack = (cells + along * along - 1) / (along * along);
-  const int side = int(std::ceil(along * spacing));
-  small_lattice.nodes = {side, side, std::max(int(std::ceil(double(stack) * spacing)), 8)};
   auto types = make_cell_types(small, small_lattice);
+  const double dense = cell_volume / std::max(1.0, all_cells) / std::max(1e-3, lattice.phi_geometric) / (spacing * spacing);
+  const double layer = std::clamp(dense, largest_height(types) + 1, 2.3 * lattice.radius + 1);
+  const int side = int(std::ceil(along * spacing));
+  small_lattice.nodes = {side, side, std::max(int(std::ceil(double(stack) * layer)), 8)};
   std::vector<double> positions;
   int next = 0;
   for (const auto& type : types)
     for (int c = 0; c < type.count; ++c, ++next) {
-      const Vector3 centre((next % along + 0.5) * spacing, (next / along % along + 0.5) * spacing, (next / (along * along) + 0.5) * spacing);
+      const Vector3 centre((next % along + 0.5) * spacing, (next / along % along + 0.5) * spacing, (next / (along * along) + 0.5) * layer);
       const auto placed = place_mesh(type.reference, centre, {1, 0, 0, 0});
       positions.insert(positions.end(), placed.begin(), placed.end());
     }
+  const double searches = problem.contact.enabled ? search_seconds(small_lattice, Cells(types, positions)) : 0;
   const auto suspension = make_suspension(small, small_lattice, std::move(types), positions);
   const double coupled = seconds_per_step([&] { suspension->step(); });
-  result.per_vertex = std::max(0.0, coupled - fluid(small_lattice.nodes)) / double(vertices);
+  const double sampled = seconds_per_step([&] { suspension->step_and_measure(); });
+  result.per_vertex = (std::max(0.0, coupled - fluid(small_lattice.nodes)) + searches) / double(vertices);
+  result.per_vertex_sampled = std::max(0.0, sampled - coupled) / double(vertices);
   return result;
 }
 

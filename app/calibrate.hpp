@@ -5,10 +5,11 @@
 
 namespace corpuscle::app {
 
-/// Seconds of a time step = per_node * nodes + per_vertex * vertices.
+/// Seconds of a time step = per_node * nodes + per_vertex * vertices; of a sample more by per_vertex_sampled * vertices.
 struct Calibration {
   double per_node = 0;
-  double per_vertex = 0;  ///< 0 without cells
+  double per_vertex = 0;          ///< membranes, contacts with their share of the searches for neighbours, coupling; 0 without cells
+  double per_vertex_sampled = 0;
 };
 /// Runs small versions of the scene for about a second. Kokkos must be running.
 Calibration calibrate(const Problem& problem, const LatticeParameters& lattice);

@@ -19,6 +19,7 @@ int plan(const PlanOptions& options);
 struct RunOptions : SceneOptions {
   std::string output;
   bool overwrite = false;
+  bool profile = false;  ///< print and store the time of each operator
 };
 int run(const RunOptions& options);
 

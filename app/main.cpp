@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
   add_scene_options(*run, run_options);
   run->add_option("-o,--output", run_options.output, "Directory for the results; created")->type_name("DIR")->required();
   run->add_flag("--overwrite", run_options.overwrite, "Replace the results of an earlier run in that directory");
+  run->add_flag("--profile", run_options.profile, "Print the time of each operator at the end, and write it into summary.json");
 
   app::StabilityOptions stability_options;
   auto* stability = program.add_subcommand("stability", "Search for the stability limits that plan and run use (docs/stability.md); an interrupted search goes on where it stopped");

@@ -83,6 +83,7 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
   j["predicted_seconds"] = seconds;
   j["seconds_per_node"] = c.per_node;
   j["seconds_per_vertex"] = c.per_vertex;
+  j["seconds_per_vertex_sampled"] = c.per_vertex_sampled;
   return j;
 }
 
@@ -140,7 +141,7 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
   fmt::print("; series every {} steps", l.series_every);
   if (l.snapshot_every > 0) fmt::print(", snapshot every {}", l.snapshot_every);
   fmt::print("\nMemory      {:.1f} MiB ({:.0f} bytes a node, {} vertices)\n", double(bytes) / (1 << 20), double(bytes) / nodes, vertices);
-  fmt::print("Time        {} predicted on this machine with {} threads ({:.1f} million node updates per second), packing not included\n", format_duration(seconds),
+  fmt::print("Time        {} predicted on this machine with {} threads ({:.1f} million node updates per second), packing and snapshots not included\n", format_duration(seconds),
              Kokkos::DefaultExecutionSpace().concurrency(), nodes / per_step / 1e6);
 }
 
@@ -154,7 +155,7 @@ int plan(const PlanOptions& options) {
   const Calibration calibration = calibrate(problem, lattice);
   std::int64_t vertices = 0;
   for (const auto& type : lattice.cells) vertices += type.count * type.vertices;
-  const double per_step = calibration.per_node * lattice.box_volume() + calibration.per_vertex * double(vertices);
+  const double per_step = calibration.per_node * lattice.box_volume() + (calibration.per_vertex + calibration.per_vertex_sampled / double(lattice.series_every)) * double(vertices);
   const double seconds = per_step * double(lattice.steps);
   const std::size_t bytes = predicted_bytes(problem, lattice);
   if (options.json)

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <Kokkos_Profiling_ScopedRegion.hpp>
+
 #include <atomic>
 #include <csignal>
 #include <filesystem>
@@ -10,6 +12,7 @@
 
 #include "app/commands.hpp"
 #include "app/machine.hpp"
+#include "app/profile.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
 #include "io/packing_file.hpp"
@@ -85,14 +88,21 @@ class Outputs {
     }
     if (lattice.snapshot_every > 0 && problem.output.fluid) fluid_.emplace(directory / "fluid.vtkhdf", lattice.nodes, domain);
   }
-  void series(const Sample& sample) { file_.append(sample); }
+  void series(const Sample& sample) {
+    const Kokkos::Profiling::ScopedRegion region("write_series");
+    file_.append(sample);
+  }
   void snapshot(const Suspension& suspension) {
     if (!cells_ && !fluid_) return;
+    const Kokkos::Profiling::ScopedRegion region("write_snapshot");
     const Snapshot s = suspension.snapshot(fluid_.has_value());
     if (cells_) cells_->append(s);
     if (fluid_) fluid_->append(s);
   }
-  void flush() { file_.flush(); }
+  void flush() {
+    const Kokkos::Profiling::ScopedRegion region("write_series");
+    file_.flush();
+  }
 
  private:
   RunFile file_;
@@ -154,7 +164,16 @@ RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Output
         if (step % progress_every == 0) show(step + 1);
       }
     }
-    if (lattice.snapshot_every > 0) outputs.snapshot(suspension);
+    if (end.steps == lattice.steps) {
+      if (lattice.snapshot_every > 0) outputs.snapshot(suspension);
+      // What a step measures is the state at its beginning: one more for the state at the end.
+      const Sample sample = suspension.step_and_measure();
+      suspension.check();
+      outputs.series(sample);
+      series.add(sample);
+    } else if (lattice.snapshot_every > 0) {
+      outputs.snapshot(suspension);
+    }
   } catch (const SimulationError& broken) {
     end.stopped_by = "guard";
     end.failure = broken.what();
@@ -228,6 +247,8 @@ int run(const RunOptions& options) {
   packing.positions = {};
   if (packs_cells(problem, types)) suspension->settle();
   SeriesSummary series(lattice, problem.run.discard);
+  std::optional<Profile> profile;
+  if (options.profile) profile.emplace();
   const RunEnd end = simulate(lattice, *suspension, outputs, series, terminal);
 
   Summary summary = series.result();
@@ -243,11 +264,13 @@ int run(const RunOptions& options) {
   int code = end.code;
   try {
     outputs.flush();
+    if (profile) summary.profile = profile->times();
     write_summary(directory / "summary.json", summary);
   } catch (const OutputError& failed) {
     if (failure.empty()) failure = failed.what();
     if (code == exit_code::success) code = exit_code::failure;
   }
+  if (profile) std::cout << profile_table(summary.profile);
   std::cout << result_line(summary, directory) << std::endl;
   if (!failure.empty()) std::cerr << "error: " << failure << " What was written until then is kept in " << directory.string() << "." << std::endl;
   return code;

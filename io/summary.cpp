@@ -157,6 +157,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["mlups"] = summary.mlups;
   json["threads"] = summary.threads;
   json["bytes_peak"] = summary.bytes_peak;
+  for (const auto& part : summary.profile) json["profile"].push_back({{"operator", part.name}, {"calls", part.calls}, {"seconds", part.seconds}});
 
   auto temporary = path;
   temporary += ".tmp";

@@ -13,6 +13,13 @@
 
 namespace corpuscle {
 
+/// Time of one operator of a run, or of a part of the host's work (corpuscle run --profile).
+struct OperatorTime {
+  std::string name;
+  std::int64_t calls = 0;
+  double seconds = 0;
+};
+
 /// What summary.json holds (docs/outputs.md). NaN where a number has no meaning; it's written as null.
 struct Summary {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -56,6 +63,7 @@ struct Summary {
   std::int64_t bytes_peak = 0;        ///< largest memory of the process
   std::vector<std::string> warnings;  ///< of settings close to a stability limit
   std::string stopped_by;             ///< "end", "interrupt", "guard" ...
+  std::vector<OperatorTime> profile;  ///< empty unless it was asked for
 };
 
 /// Accumulates samples during a run; keeps a few scalars of each.

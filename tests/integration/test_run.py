@@ -49,7 +49,8 @@ def check_outputs(program, folder, scene):
     assert summary["relative_viscosity"] > 1
     with h5py.File(folder / "a/run.h5") as file:
         steps = file["series/step"][:]
-        assert np.all(np.diff(steps) == steps[1] - steps[0]) and steps[0] == 0
+        assert np.all(np.diff(steps)[:-1] == steps[1] - steps[0]) and steps[0] == 0
+        assert steps[-1] == summary["steps"] and 0 < steps[-1] - steps[-2] <= steps[1] - steps[0], "the series ends with the final state"
         stress = file["series/particle_stress"][:]
         stresslets = file["cells/stresslet"][:]
         plan = json.loads(run(program, "plan", scene, "--json").stdout)
