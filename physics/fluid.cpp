@@ -282,6 +282,12 @@ std::size_t Fluid<Storage, Compute>::bytes() const {
   return populations_.span() * sizeof(Storage) + (force_.span() + velocity_.span()) * sizeof(Compute);
 }
 
+template <class Storage, class Compute>
+std::size_t Fluid<Storage, Compute>::predicted_bytes(const FluidParameters& p) {
+  const std::size_t nodes = Grid{p.nodes[0], p.nodes[1], p.nodes[2], p.halo}.padded_nodes();
+  return 19 * padded_stride<Storage>(nodes) * sizeof(Storage) + (p.needs_force ? 2 * 4 * nodes * sizeof(Compute) : 0);
+}
+
 template class Fluid<float, float>;
 template class Fluid<double, double>;
 
