@@ -1,7 +1,6 @@
 // What Kokkos was asked to do between two points: kernels, allocations, copies, fences. For tests and perf/: shows what a step pays for.
 #pragma once
 #include <Kokkos_Core.hpp>
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -16,7 +15,7 @@ class KernelLog {
     std::string label;
     enum Kind { loop, reduction, scan } kind;
   };
-  /// A named block of memory. Views of the same label are added up.
+  /// By label; views of the same label are added up. Without the scratch memory of Kokkos.
   using Bytes = std::map<std::string, std::int64_t>;
 
   KernelLog() {
@@ -32,11 +31,13 @@ class KernelLog {
       *id = 0;
     });
     hooks::set_allocate_data_callback([](Kokkos::Tools::SpaceHandle, const char* name, const void*, std::uint64_t bytes) {
+      if (of_kokkos(name)) return;
       current()->allocated_[name] += std::int64_t(bytes);
       current()->live_[name] += std::int64_t(bytes);
     });
-    hooks::set_deallocate_data_callback(
-        [](Kokkos::Tools::SpaceHandle, const char* name, const void*, std::uint64_t bytes) { current()->live_[name] -= std::int64_t(bytes); });
+    hooks::set_deallocate_data_callback([](Kokkos::Tools::SpaceHandle, const char* name, const void*, std::uint64_t bytes) {
+      if (!of_kokkos(name)) current()->live_[name] -= std::int64_t(bytes);
+    });
     hooks::set_begin_deep_copy_callback([](Kokkos::Tools::SpaceHandle, const char* to, const void*, Kokkos::Tools::SpaceHandle, const char* from, const void*, std::uint64_t) {
       current()->copies_.push_back(std::string(from) + " -> " + to);
     });
@@ -88,6 +89,8 @@ class KernelLog {
     static KernelLog* log = nullptr;
     return log;
   }
+  /// Scratch memory that the backend makes once and keeps: for teams, for reductions.
+  static bool of_kokkos(const std::string& label) { return label.rfind("Kokkos::", 0) == 0 || label == "[unlabeled]"; }
   static void launched(const char* name, Launch::Kind kind, std::uint64_t* id) {
     current()->launches_.push_back({name, kind});
     *id = 0;

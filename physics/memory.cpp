@@ -51,8 +51,8 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
   m.program = runs_on_host ? program_bytes : 0;
   const bool with_fluid = lattice.snapshot_every > 0 && problem.output.fluid;
   const auto nodes = std::size_t(lattice.box_volume());
-  // The velocities of the fluid, [nodes][3] floats: from the kernel, as a host array, and as the chunk that HDF5 puts together.
-  if (with_fluid) m.output += nodes * 3 * sizeof(float) * (runs_on_host ? 3 : 1);
+  // The velocities of the fluid, [nodes][3] floats: from the kernel, and as a host array.
+  if (with_fluid) m.output += nodes * 3 * sizeof(float) * (runs_on_host ? 2 : 1);
   if (problem.cells.empty()) return m;
 
   const std::size_t real = problem.accuracy.membrane_precision == Precision::single_precision ? 4 : 8;
