@@ -2,6 +2,7 @@
 
 #include "core/halo.hpp"
 #include "core/lattice_for.hpp"
+#include "core/to_host.hpp"
 #include "kernels/population_halo.hpp"
 #include "kernels/vector_halo.hpp"
 
@@ -261,9 +262,7 @@ std::vector<Out> velocities(const Grid& grid, double body_force, const Fluid<Sto
   with_accessor([&](auto accessor, auto parity) {
     lattice_for("velocity_out", grid, interior(grid), NodeVelocity<Storage, decltype(parity)::value, Out>{accessor, body_force, out, grid.nx, grid.ny});
   });
-  std::vector<Out> host(grid.nodes() * 3);
-  Kokkos::deep_copy(Kokkos::View<Out* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), grid.nodes()), out);
-  return host;
+  return to_host(out);
 }
 }  // namespace
 
