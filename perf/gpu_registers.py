@@ -18,12 +18,13 @@ from pathlib import Path
 
 SOURCES = ["fluid", "coupling", "membrane", "contact", "vertex_motion"]
 
-# Kernel names as the table shows them, in its order: (pattern in the demangled functor, name with groups). Everything else is not hot: start, sampling, copies.
+# Kernel names as the table shows them, in its order: (pattern in the demangled functor, name with groups). Of kernels that share a name (parity of the step, lower and
+# upper wall) the one with most registers is shown. Everything else is not hot: start, sampling, copies.
 FORCING = {"0": "no force", "1": "uniform force", "2": "force field"}
 KERNELS = [
-    (r"CollideStream<(\w+), \w+, (\d), \(corpuscle::Forcing\)(\d)", lambda m: f"collide_stream, {FORCING[m[3]]}, parity {m[2]}"),
-    (r"ExchangePopulations<(\w+), (\d)", lambda m: f"exchange_populations, parity {m[2]}"),
-    (r"BounceBack<(\w+), \w+, (\d), (\w+)", lambda m: f"bounce_back, {'upper' if m[3] == 'true' else 'lower'}, parity {m[2]}"),
+    (r"CollideStream<(\w+), \w+, (\d), \(corpuscle::Forcing\)(\d)", lambda m: f"collide_stream, {FORCING[m[3]]}"),
+    (r"ExchangePopulations<(\w+), (\d)", lambda m: "exchange_populations"),
+    (r"BounceBack<(\w+), \w+, (\d), (\w+)", lambda m: "bounce_back"),
     (r"ScatterForce<(\w+)", lambda m: "scatter_force"),
     (r"GatherVelocity<(\w+)", lambda m: "gather_velocity, periodic"),
     (r"ExtendVelocity<(\w+)", lambda m: "gather_velocity, walls"),
@@ -96,7 +97,7 @@ def main():
     text = (arguments.folder / "compile_commands.json").read_text()
     architecture = arguments.architecture or re.search(r"-arch=(sm_\d+)", text)[1]
 
-    rows = {}
+    rows, kernels, spilling = {}, 0, 0
     with tempfile.TemporaryDirectory() as output:
         found = list(compile_for_figures(arguments.folder, architecture, Path(output)))
     demangled = subprocess.run(["c++filt"], input="\n".join(f[0] for f in found), capture_output=True, text=True).stdout.splitlines()
@@ -106,19 +107,24 @@ def main():
         for position, (pattern, label) in enumerate(KERNELS):
             if match := re.search(pattern, name):
                 precision = match[1] if match.groups() and match[1] in ("float", "double") else "double"
-                rows[(position, label(match), precision)] = values
+                kernel = rows.setdefault((position, label(match)), {})
+                kernel[precision] = max(kernel.get(precision, values), values)
+                kernels += 1
+                spilling += values[2] + values[3] > 0
                 break
 
-    print(f"| {architecture}: kernel | arithmetic | registers | spill stores, loads (B) | stack (B) | shared (B) | block | occupancy |")
-    print("|---|---|---|---|---|---|---|---|")
-    spilling = 0
-    for (_, label, precision), (registers, stack, stores, loads, shared) in sorted(rows.items()):
-        if label.startswith("membrane_forces"):
-            shared += 3 * arguments.vertices * (4 if precision == "float" else 8)
-        block, occupancy = launch(registers, shared, architecture)
-        spilling += stores + loads > 0
-        print(f"| {label} | {precision} | {registers} | {stores}, {loads} | {stack} | {shared} | {block} | {100 * occupancy:.0f} % |")
-    print(f"\n{len(rows)} kernels, {spilling} with spills.")
+    print(f"| {architecture}: kernel (float / double) | registers | spilled bytes, stored + loaded | stack (B) | shared (B) | threads a block | occupancy |")
+    print("|---|---|---|---|---|---|---|")
+    for (_, label), kernel in sorted(rows.items()):
+        columns = []
+        for precision in [p for p in ("float", "double") if p in kernel]:
+            registers, stack, stores, loads, shared = kernel[precision]
+            if label.startswith("membrane_forces"):
+                shared += 3 * arguments.vertices * (4 if precision == "float" else 8)
+            block, occupancy = launch(registers, shared, architecture)
+            columns.append((registers, stores + loads, stack, shared, block, f"{100 * occupancy:.0f} %"))
+        print(f"| {label} | " + " | ".join(" / ".join(str(c[i]) for c in columns) for i in range(6)) + " |")
+    print(f"\n{kernels} kernels, {spilling} with spills.")
     return 1 if spilling else 0
 
 
