@@ -38,7 +38,8 @@ class KernelLog {
     hooks::set_deallocate_data_callback([](Kokkos::Tools::SpaceHandle, const char* name, const void*, std::uint64_t bytes) {
       if (!of_kokkos(name)) current()->live_[name] -= std::int64_t(bytes);
     });
-    hooks::set_begin_deep_copy_callback([](Kokkos::Tools::SpaceHandle, const char* to, const void*, Kokkos::Tools::SpaceHandle, const char* from, const void*, std::uint64_t) {
+    using Space = Kokkos::Tools::SpaceHandle;
+    hooks::set_begin_deep_copy_callback([](Space, const char* to, const void*, Space, const char* from, const void*, std::uint64_t) {
       current()->copies_.push_back(std::string(from) + " -> " + to);
     });
   }

@@ -8,7 +8,8 @@
 
 namespace corpuscle {
 
-/// Page-locked host memory, which devices copy to at the full speed of the bus (pageable memory gets about half); plain host memory where kernels run on the host.
+/// Page-locked host memory, which devices copy to at the full speed of the bus (pageable memory gets about half); plain host memory
+/// where kernels run on the host.
 using StagingSpace = Kokkos::SharedHostPinnedSpace;
 
 namespace detail {

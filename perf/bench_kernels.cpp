@@ -52,7 +52,8 @@ void report(const char* name, const std::string& scene) {
       kernels += (kernels.empty() ? "" : "; ") + launch.label + (count > 1 ? " x" + std::to_string(count) : "");
     }
   std::printf("| %s | %zu | %s | %.0f | %s | %zu, %zu, %zu |\n", name, log.launches().size(), kernels.c_str(), double(node_bytes) / nodes,
-              vertices > 0 ? std::to_string(int(double(vertex_bytes) / vertices + 0.5)).c_str() : "-", log.allocated().size(), log.copies().size(), log.fences().size());
+              vertices > 0 ? std::to_string(int(double(vertex_bytes) / vertices + 0.5)).c_str() : "-", log.allocated().size(), log.copies().size(),
+              log.fences().size());
 }
 
 /// Twenty spheres between walls with as little physics as a cell can have, plus lines for the tables.
@@ -65,7 +66,8 @@ std::string capsules(const std::string& accuracy, const std::string& moduli, con
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard scope(argc, argv);
-  const std::string no_contact = "[contact]\nenabled = false\n", none = "bending = 0, global_area = 0, volume = 0", all = "bending = 0.01, global_area = 1, volume = 1";
+  const std::string no_contact = "[contact]\nenabled = false\n", none = "bending = 0, global_area = 0, volume = 0";
+  const std::string all = "bending = 0.01, global_area = 1, volume = 1";
   const std::string euler = "vertex_update = 'euler'", averaged = "vertex_update = 'averaged'";
   std::printf("| scene | launches a step | kernels | bytes a node | bytes a vertex | allocations, copies, waits a step |\n|---|---|---|---|---|---|\n");
   report("fluid, float, periodic", "[box]\nsize = [6, 6, 6]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 8\n[run]\nsteps = 10\n");

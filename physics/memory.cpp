@@ -21,8 +21,8 @@ std::size_t membrane_tables(const CellTypeLattice& type, std::size_t real) {
   return type.vertices * ((1 + 2 * largest_degree) * sizeof(int) + 9 * largest_degree * real) + type.faces * 3 * sizeof(int);
 }
 
-/// Lists, bins and keys of `Contact`. The number of neighbours depends on how the cells lie: a vertex where two surfaces touch (gap about half the reach) sees the
-/// disk of the other one that the reach cuts out, and at the volume fraction phi about that fraction of the vertices touches.
+/// Lists, bins and keys of `Contact`. The number of neighbours depends on how the cells lie: a vertex where two surfaces touch (gap about half the reach)
+/// sees the disk of the other one that the reach cuts out, and at the volume fraction phi about that fraction of the vertices touches.
 std::size_t contact_bytes(const LatticeParameters& lattice, std::size_t vertices, double reach) {
   double area = 0;
   for (const auto& type : lattice.cells) area += double(type.count) * type.area;

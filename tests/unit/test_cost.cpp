@@ -58,8 +58,8 @@ const std::string channel = "[box]\nsize = [2, 2, 4]\n[accuracy]\nradius = 5\n[r
 const std::string periodic = "[box]\nsize = [2, 2, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 5\n[run]\nsteps = 10\n";
 
 /// One sphere between walls with as little physics as a cell can have, plus lines for the tables [accuracy], [[cells]] and its membrane, and whole tables.
-std::string capsule(const std::string& accuracy = "vertex_update = 'euler'\nallow_unstable = true", const std::string& moduli = "bending = 0, global_area = 0, volume = 0",
-                    const std::string& cell = "", const std::string& tables = "[contact]\nenabled = false\n") {
+std::string capsule(const std::string& accuracy = "vertex_update = 'euler'\nallow_unstable = true",
+                    const std::string& moduli = "bending = 0, global_area = 0, volume = 0", const std::string& cell = "", const std::string& tables = "[contact]\nenabled = false\n") {
   return "[box]\nsize = [4, 4, 4]\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n[accuracy]\nradius = 4\n" + accuracy + "\n" + tables +
          "[[cells]]\nshape = 'sphere'\ncount = 1\nmembrane = { law = 'neo_hookean', " + moduli + " }\n" + cell + "\n";
 }
@@ -85,7 +85,7 @@ TEST_CASE("A capsule with the least physics launches each operator once, and eac
   Counts expected{{"membrane_forces", 1}, {"scatter_force", 3}, {"collide_stream", 1}, {"exchange_populations", 4},
                   {"bounce_back", 2},     {"gather_velocity", 3}, {"interpolate", 1},    {"advance", 1}};
   Counts rest = extra(base, expected);  // spreading: on devices one kernel, on the host colours and the sort before them
-  for (auto entry = rest.begin(); entry != rest.end();) entry = entry->first.rfind("spread", 0) == 0 || entry->first.rfind("sort", 0) == 0 ? rest.erase(entry) : std::next(entry);
+  std::erase_if(rest, [](const auto& entry) { return entry.first.rfind("spread", 0) == 0 || entry.first.rfind("sort", 0) == 0; });
   CHECK(rest == Counts{});
   CHECK(base.count("spread") == 1);
 
@@ -95,9 +95,10 @@ TEST_CASE("A capsule with the least physics launches each operator once, and eac
   CHECK(membrane("bending = 0, global_area = 1, volume = 0") == Counts{{"membrane_forces", -1}, {"membrane_forces, global", 1}});
   CHECK(membrane("bending = 0.01, global_area = 0, volume = 1") == Counts{{"membrane_forces", -1}, {"membrane_forces, bending, global", 1}});
   CHECK(extra(kernels_of(capsule("vertex_update = 'averaged'")), base) == Counts{});
-  CHECK(extra(kernels_of(capsule(euler, "bending = 0, global_area = 0, volume = 0", "stretch = { force = 0.1, patch_diameter = 0.8 }")), base) == Counts{{"stretching_forces", 1}});
-  CHECK(extra(kernels_of(capsule(euler, "bending = 0, global_area = 0, volume = 0", "stretch = { force = 0 }")), base) == Counts{});
-  const Counts contact = extra(kernels_of(capsule(euler, "bending = 0, global_area = 0, volume = 0", "", "[contact]\nenabled = true\n")), base);
+  const std::string none = "bending = 0, global_area = 0, volume = 0";
+  CHECK(extra(kernels_of(capsule(euler, none, "stretch = { force = 0.1, patch_diameter = 0.8 }")), base) == Counts{{"stretching_forces", 1}});
+  CHECK(extra(kernels_of(capsule(euler, none, "stretch = { force = 0 }")), base) == Counts{});
+  const Counts contact = extra(kernels_of(capsule(euler, none, "", "[contact]\nenabled = true\n")), base);
   CHECK(contact.at("contact_forces") == 1);
   for (const auto& [label, count] : contact) CHECK(label.rfind("contact", 0) == 0);
 }
@@ -112,7 +113,8 @@ TEST_CASE("Bytes of a scene are those of its models", "[cost]") {
   };
   const std::string euler = "vertex_update = 'euler'\nallow_unstable = true";
   for (const Case& c : {Case{"least", capsule(), 4, 0, false, false}, Case{"double", capsule(euler + "\nprecision = 'double'"), 8, 0, false, false},
-                        Case{"averaged", capsule("vertex_update = 'averaged'"), 4, 2, false, false}, Case{"chebyshev", capsule("vertex_update = 'chebyshev'"), 4, 6, false, false},
+                        Case{"averaged", capsule("vertex_update = 'averaged'"), 4, 2, false, false},
+                        Case{"chebyshev", capsule("vertex_update = 'chebyshev'"), 4, 6, false, false},
                         Case{"bending, area and volume", capsule(euler, "bending = 0.01, global_area = 1, volume = 1"), 4, 0, false, false},
                         Case{"stretching", capsule(euler, none, "stretch = { force = 0.1, patch_diameter = 0.8 }"), 4, 0, false, true},
                         Case{"contact", capsule(euler, none, "", "[contact]\nenabled = true\n"), 4, 0, true, false}}) {
@@ -158,7 +160,8 @@ TEST_CASE("Bytes of a scene are those of its models", "[cost]") {
 TEST_CASE("A step allocates nothing, copies nothing and does not wait for the device", "[cost]") {
   const std::string dense = "[box]\nsize = [4, 4, 4]\n[flow]\ncapillary_number = 0.1\n[accuracy]\nradius = 4\nvertex_update = '";
   const std::string cells = "'\n[run]\nstrain = 1\n[[cells]]\ncount = 6\n";
-  for (const auto& [scene, waits] : {std::pair<std::string, std::size_t>{channel, 0}, {periodic, 0}, {dense + "averaged" + cells + "[contact]\nenabled = false\n", 0},
+  for (const auto& [scene, waits] : {std::pair<std::string, std::size_t>{channel, 0}, {periodic, 0},
+                                     {dense + "averaged" + cells + "[contact]\nenabled = false\n", 0},
                                      {dense + "chebyshev" + cells + "[contact]\nenabled = false\n", 0}, {dense + "averaged" + cells, 1}}) {
     INFO(scene);
     Observed run(scene);
@@ -179,7 +182,8 @@ TEST_CASE("A step allocates nothing, copies nothing and does not wait for the de
 
 TEST_CASE("The predicted memory of a suspension is within 10 % of what it allocates", "[cost]") {
   const auto scene = [](const std::string& size, const std::string& accuracy, const std::string& cells, const std::string& contact = "true") {
-    return "[box]\nsize = " + size + "\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n[contact]\nenabled = " + contact + "\n[accuracy]\n" + accuracy + "\n" + cells;
+    return "[box]\nsize = " + size + "\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n[contact]\nenabled = " + contact +
+           "\n[accuracy]\n" + accuracy + "\n" + cells;
   };
   const std::string one = "[[cells]]\ncount = 1\n";
   for (const std::string& text : std::vector<std::string>{
@@ -192,7 +196,8 @@ TEST_CASE("The predicted memory of a suspension is within 10 % of what it alloca
            scene("[6, 6, 6]", "radius = 6\ndelta_kernel = 3", "[[cells]]\neffective_volume_fraction = 0.6\n"),  // crowded
            scene("[6, 6, 6]", "radius = 6\ndelta_kernel = 4\nvertex_update = 'chebyshev'", "[[cells]]\neffective_volume_fraction = 0.4\n"),
            scene("[6, 6, 6]", "radius = 6", "[[cells]]\neffective_volume_fraction = 0.4\n", "false"),
-           scene("[4, 4, 4]", "radius = 6", "[[cells]]\ncount = 2\n[[cells]]\nshape = 'sphere'\ncount = 2\n[[cells]]\nshape = 'sphere'\ncount = 2\nrelative_radius = 0.6\n[[cells]]\nshape = 'spheroid'\naspect_ratio = 0.5\ncount = 1\n"),
+           scene("[4, 4, 4]", "radius = 6", "[[cells]]\ncount = 2\n[[cells]]\nshape = 'sphere'\ncount = 2\n"
+                 "[[cells]]\nshape = 'sphere'\ncount = 2\nrelative_radius = 0.6\n[[cells]]\nshape = 'spheroid'\naspect_ratio = 0.5\ncount = 1\n"),
        }) {
     INFO(text);
     Observed run(text);
