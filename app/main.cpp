@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "app/commands.hpp"
+#include "app/machine.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
 
@@ -41,6 +42,7 @@ int fail(int code, const char* message) {
 
 int main(int argc, char** argv) {
   using namespace corpuscle;
+  app::return_freed_memory();
   CLI::App program{introduction, "corpuscle"};
   program.footer(ending);
   program.set_version_flag("--version", "corpuscle " + version_string() + " (" + git_revision() + ")");

@@ -5,9 +5,10 @@
 
 #include "app/calibrate.hpp"
 #include "app/commands.hpp"
+#include "core/types.hpp"
 #include "io/progress.hpp"
 #include "io/scene.hpp"
-#include "physics/suspension.hpp"
+#include "physics/memory.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -32,7 +33,7 @@ std::vector<std::string> active_models(const Problem& problem, const LatticePara
   return models;
 }
 
-nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::size_t bytes, double seconds, const Calibration& c) {
+nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, const Calibration& c) {
   nlohmann::json j;
   j["nodes"] = l.nodes;
   j["radius"] = l.radius;
@@ -79,7 +80,8 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, std::
                           {"volume_modulus", t.moduli.volume},
                           {"stretching_force", t.stretching_force}});
   j["models"] = active_models(problem, l);
-  j["predicted_bytes"] = bytes;
+  j["predicted_bytes"] = memory.suspension();
+  j["predicted_bytes_peak"] = memory.peak();
   j["predicted_seconds"] = seconds;
   j["seconds_per_node"] = c.per_node;
   j["seconds_per_vertex"] = c.per_vertex;
@@ -101,7 +103,7 @@ void print_si(const LatticeParameters& l) {
     if (si.force && t.stretching_force > 0) fmt::print("            stretching force on {} = {:.4g} N\n", t.name, t.stretching_force * *si.force);
 }
 
-void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes, double seconds, double per_step) {
+void print(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, double per_step) {
   fmt::print("Lattice     {} x {} x {} nodes, r = {:g}, tau = {:g}, viscosity = {:.6g}\n", l.nodes[0], l.nodes[1], l.nodes[2], l.radius, l.relaxation_time, l.viscosity);
   if (l.shear_rate > 0) {
     fmt::print("Flow        shear rate = {:.4g} a step, Re = {:.3g}, Ma = {:.3g}", l.shear_rate, l.reynolds_number, l.mach_number);
@@ -140,9 +142,14 @@ void print(const Problem& problem, const LatticeParameters& l, std::size_t bytes
   if (l.steps_per_strain > 0) fmt::print(" = {:g} strain units of {:.0f} steps", double(l.steps) / l.steps_per_strain, l.steps_per_strain);
   fmt::print("; series every {} steps", l.series_every);
   if (l.snapshot_every > 0) fmt::print(", snapshot every {}", l.snapshot_every);
-  fmt::print("\nMemory      {:.1f} MiB ({:.0f} bytes a node, {} vertices)\n", double(bytes) / (1 << 20), double(bytes) / nodes, vertices);
+  const auto mebibytes = [](std::size_t bytes) { return double(bytes) / (1 << 20); };
+  fmt::print("\nMemory      {:.1f} MiB at most; while it steps {:.1f} MiB: fluid {:.1f} ({:.0f} bytes a node)", mebibytes(memory.peak()), mebibytes(memory.suspension()),
+             mebibytes(memory.fluid), double(memory.fluid) / nodes);
+  if (vertices > 0)
+    fmt::print(", {} vertices {:.1f} ({:.0f} bytes each)", vertices, mebibytes(memory.suspension() - memory.fluid), double(memory.suspension() - memory.fluid) / double(vertices));
+  fmt::print("\n");
   fmt::print("Time        {} predicted on this machine with {} threads ({:.1f} million node updates per second), packing and snapshots not included\n", format_duration(seconds),
-             Kokkos::DefaultExecutionSpace().concurrency(), nodes / per_step / 1e6);
+             ExecSpace().concurrency(), nodes / per_step / 1e6);
 }
 
 }  // namespace
@@ -157,11 +164,11 @@ int plan(const PlanOptions& options) {
   for (const auto& type : lattice.cells) vertices += type.count * type.vertices;
   const double per_step = calibration.per_node * lattice.box_volume() + (calibration.per_vertex + calibration.per_vertex_sampled / double(lattice.series_every)) * double(vertices);
   const double seconds = per_step * double(lattice.steps);
-  const std::size_t bytes = predicted_bytes(problem, lattice);
+  const MemoryEstimate memory = predict_memory(problem, lattice);
   if (options.json)
-    std::cout << to_json(problem, lattice, bytes, seconds, calibration).dump(2) << "\n";
+    std::cout << to_json(problem, lattice, memory, seconds, calibration).dump(2) << "\n";
   else
-    print(problem, lattice, bytes, seconds, per_step);
+    print(problem, lattice, memory, seconds, per_step);
   return 0;
 }
 

@@ -43,6 +43,7 @@ class CountingSort {
   }
   Array1<int> order() const { return order_; }
   Array1<int> begin() const { return begin_; }
+  static std::size_t bytes_of_bins(std::size_t bins) { return (bins * (chunks + 1) + 2) * sizeof(int); }
   std::size_t bytes() const { return (order_.span() + counts_.span() + begin_.span()) * sizeof(int); }
 
  private:

@@ -1,8 +1,9 @@
-// Vertex vectors to and from plain host arrays.
+// Vertex vectors from plain host arrays; back by `to_host`.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "core/to_host.hpp"
 #include "core/types.hpp"
 
 namespace corpuscle {
@@ -12,12 +13,6 @@ inline VertexVectors to_device(const std::vector<double>& host, const std::strin
   const VertexVectors vectors(Kokkos::view_alloc(Kokkos::WithoutInitializing, label), host.size() / 3);
   Kokkos::deep_copy(vectors, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)));
   return vectors;
-}
-
-inline std::vector<double> to_host(const VertexVectors& vectors) {
-  std::vector<double> host(vectors.extent(0) * 3);
-  Kokkos::deep_copy(Kokkos::View<double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), vectors.extent(0)), vectors);
-  return host;
 }
 
 }  // namespace corpuscle

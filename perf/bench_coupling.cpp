@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
     measure<float>(section, "phi 0.36", dense, points, true);
     measure<double>(section, "phi 0.36", dense, points, true);
   }
-  // Where slabs in z are hard to share out: few of them, most of them empty, one cell in all of them.
+  // Where work is hard to share out: few planes, most of the box empty, one cell in all of it.
   SuspensionSettings quarter = s;
   quarter.phi = 0.09;
   measure<float>(section, "phi 0.09, everywhere", random_suspension(quarter), 4, true);

@@ -6,6 +6,7 @@
 #include "perf/red_cells.hpp"
 #include "perf/report.hpp"
 #include "physics/suspension.hpp"
+#include "physics/memory.hpp"
 
 using namespace corpuscle;
 using namespace corpuscle::perf;
@@ -38,7 +39,7 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c)
   Json row = {{"nodes", c.lattice.nodes},
               {"vertices", std::int64_t(vertices)},
               {"MiB", bytes / 1048576},
-              {"predicted_MiB", double(predicted_bytes(c.problem, c.lattice)) / 1048576},
+              {"predicted_MiB", double(predict_memory(c.problem, c.lattice).suspension()) / 1048576},
               {"bytes_per_node", bytes / nodes}};
   if (peak_known) row["peak_MiB"] = (memory_of_process("VmHWM") - before) / 1048576;
   if (vertices > 0) {
@@ -47,7 +48,7 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c)
     for (auto& type : none.cells) type.count = 0;
     Problem no_contact = c.problem;
     no_contact.contact.enabled = false;
-    const double fields = double(predicted_bytes(no_contact, none));
+    const double fields = double(predict_memory(no_contact, none).suspension());
     row["bytes_per_node"] = fields / nodes;
     row["bytes_per_vertex"] = (bytes - fields) / vertices;
   }

@@ -21,6 +21,11 @@ class CellSampler {
   void measure_shape(const Cells& cells);
   /// Result on the host, ordered by type, then number.
   std::vector<CellSample> collect() const;
+  std::size_t bytes() const {
+    std::size_t total = values_.span() * sizeof(double);
+    for (const auto& faces : faces_) total += faces.span() * sizeof(int);
+    return total;
+  }
 
  private:
   PeriodicBox box_;

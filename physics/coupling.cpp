@@ -106,10 +106,16 @@ Coupling<Real>::Coupling(const Grid& grid, bool walls, int delta_kernel, SpreadM
     : grid_(grid), box_(grid, walls), delta_kernel_(delta_kernel), mode_(mode) {}
 
 template <class Real>
+std::size_t Coupling<Real>::predicted_bytes(const Grid& grid, int delta_kernel, std::size_t vertices) {
+  if (!runs_on_host) return 0;
+  return vertices * 2 * sizeof(int) + CountingSort::bytes_of_bins(Pencils(grid, delta_kernel).count());
+}
+
+template <class Real>
 template <class Delta>
 void Coupling<Real>::spread_coloured(const VertexVectors& positions, const VertexVectors& forces, const VectorField<Real>& field) {
   const int vertices = int(positions.extent(0));
-  if (int(keys_.extent(0)) < vertices) keys_ = Array1<int>("pencil_keys", vertices);
+  if (int(keys_.extent(0)) < vertices) keys_ = Array1<int>("spread_keys", vertices);
   const Pencils pencils(grid_, Delta::width);
   Kokkos::parallel_for("spread_keys", Kokkos::RangePolicy<ExecSpace>(0, vertices), PencilKeys<Delta>{box_, pencils, positions, keys_});
   sort_.sort(keys_, vertices, pencils.count());

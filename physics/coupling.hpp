@@ -24,6 +24,8 @@ class Coupling {
   void interpolate(const VertexVectors& positions, const VertexVectors& velocities, const VectorField<Real>& field) const;
 
   static int halo_width(int delta_kernel) { return delta_kernel == 4 ? 2 : 1; }
+  /// What `spread` will have allocated for so many vertices.
+  static std::size_t predicted_bytes(const Grid& grid, int delta_kernel, std::size_t vertices);
   std::size_t bytes() const { return keys_.span() * sizeof(int) + sort_.bytes(); }
 
  private:

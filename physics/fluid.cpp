@@ -2,6 +2,7 @@
 
 #include "core/halo.hpp"
 #include "core/lattice_for.hpp"
+#include "core/to_host.hpp"
 #include "kernels/population_halo.hpp"
 #include "kernels/vector_halo.hpp"
 
@@ -261,9 +262,7 @@ std::vector<Out> velocities(const Grid& grid, double body_force, const Fluid<Sto
   with_accessor([&](auto accessor, auto parity) {
     lattice_for("velocity_out", grid, interior(grid), NodeVelocity<Storage, decltype(parity)::value, Out>{accessor, body_force, out, grid.nx, grid.ny});
   });
-  std::vector<Out> host(grid.nodes() * 3);
-  Kokkos::deep_copy(Kokkos::View<Out* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(host.data(), grid.nodes()), out);
-  return host;
+  return to_host(out);
 }
 }  // namespace
 
@@ -280,6 +279,12 @@ std::vector<double> Fluid<Storage, Compute>::velocity_host_double() const {
 template <class Storage, class Compute>
 std::size_t Fluid<Storage, Compute>::bytes() const {
   return populations_.span() * sizeof(Storage) + (force_.span() + velocity_.span()) * sizeof(Compute);
+}
+
+template <class Storage, class Compute>
+std::size_t Fluid<Storage, Compute>::predicted_bytes(const FluidParameters& p) {
+  const std::size_t nodes = Grid{p.nodes[0], p.nodes[1], p.nodes[2], p.halo}.padded_nodes();
+  return 19 * padded_stride<Storage>(nodes) * sizeof(Storage) + (p.needs_force ? 2 * 4 * nodes * sizeof(Compute) : 0);
 }
 
 template class Fluid<float, float>;

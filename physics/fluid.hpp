@@ -61,6 +61,8 @@ class Fluid {
   VectorField<Compute> velocity() const { return velocity_; }
   std::int64_t step() const { return step_; }
   std::size_t bytes() const;
+  /// What `bytes` will be.
+  static std::size_t predicted_bytes(const FluidParameters& parameters);
 
  private:
   template <int Parity>

@@ -27,7 +27,11 @@ constexpr double growth_per_round = 0.06; // outward motion of the rim in a roun
 constexpr double first_gap = 0.5, least_gap = 0.25;  // of the range: cells grow only while no two come closer; where that stalls the gap shrinks step by step
 constexpr int patience = 150;             // rounds without growth before it does
 constexpr double reach = 1.5;             // range of the repulsion / contact range of the scene: keeps a vertex from slipping between the corners of a triangle
+constexpr double packing_skin = 0.5;      // of the contact lists
 constexpr int settling_rounds = 60;
+
+/// Range of the repulsion, lattice units.
+double packing_range(const LatticeParameters& lattice) { return reach * (lattice.contact_range > 0 ? lattice.contact_range : 1.0); }
 
 /// Mean of the vertices base ... base + vertices - 1.
 struct VertexMean {
@@ -105,7 +109,7 @@ class Packer {
  public:
   Packer(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types)
       : problem_(problem), lattice_(lattice), types_(types), scale_(start_scale()), cells_(types, start_positions()),
-        contact_(periodic_box(), {repulsion, range(), 0.5}, cells_.cell_of_vertex()) {
+        contact_(periodic_box(), {repulsion, range(), packing_skin}, cells_.cell_of_vertex()) {
     make_membranes(growing);
     for (const auto& type : types) largest_radius_ = std::max(largest_radius_, bounding_radius(type.reference));
   }
@@ -144,7 +148,7 @@ class Packer {
       membranes_.back()->set_reference_scale(scale_);
     }
   }
-  double range() const { return reach * (lattice_.contact_range > 0 ? lattice_.contact_range : 1.0); }
+  double range() const { return packing_range(lattice_); }
 
   double start_scale() const {
     double spheres = 0;
@@ -204,7 +208,7 @@ class Packer {
   /// More rounds at full size with the scene's own contact range: the pressure that held surfaces apart during growth goes, volumes and areas return.
   void settle() {
     make_membranes(settling);
-    contact_ = Contact(periodic_box(), {repulsion, range() / reach, 0.5}, cells_.cell_of_vertex());
+    contact_ = Contact(periodic_box(), {repulsion, range() / reach, packing_skin}, cells_.cell_of_vertex());
     for (int i = 0; i < settling_rounds; ++i) relax();
   }
   PeriodicBox periodic_box() const { return PeriodicBox(Grid{lattice_.nodes[0], lattice_.nodes[1], lattice_.nodes[2], 1}, problem_.box.walls); }
@@ -238,6 +242,8 @@ std::vector<double> place_cells(const Problem& problem, const LatticeParameters&
   }
   return positions;
 }
+
+double packing_reach(const LatticeParameters& lattice) { return packing_range(lattice) + packing_skin; }
 
 OverlapReport overlap_of(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const std::vector<double>& positions) {
   CellGeometry geometry;

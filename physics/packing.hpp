@@ -24,4 +24,7 @@ OverlapReport overlap_of(const Problem& problem, const LatticeParameters& lattic
 /// Whether `place_cells` packs: more than one cell, and none has a position in the scene. The suspension should settle such a start.
 bool packs_cells(const Problem& problem, const std::vector<CellType>& types);
 
+/// Reach of the contact lists while cells are packed, lattice units.
+double packing_reach(const LatticeParameters& lattice);
+
 }  // namespace corpuscle

@@ -89,7 +89,7 @@ class SuspensionOf final : public Suspension {
   std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
   std::size_t bytes() const override {
     std::size_t total = fluid_.bytes();
-    if (cells_) total += cells_->bytes() + coupling_->bytes() + motion_->bytes();
+    if (cells_) total += cells_->bytes() + coupling_->bytes() + sampler_->bytes() + motion_->bytes();
     for (const auto& m : membranes_) total += m->bytes();
     if (contact_) total += contact_->bytes();
     if (stretching_) total += stretching_->bytes();
@@ -216,23 +216,6 @@ std::unique_ptr<Suspension> make_suspension(const Problem& problem, const Lattic
   if (problem.accuracy.precision == Precision::single_precision)
     return std::make_unique<SuspensionOf<float>>(problem, lattice, std::move(types), positions);
   return std::make_unique<SuspensionOf<double>>(problem, lattice, std::move(types), positions);
-}
-
-std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lattice) {
-  const std::size_t real = problem.accuracy.precision == Precision::single_precision ? 4 : 8;
-  const bool cells = !problem.cells.empty();
-  const Grid grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], fluid_parameters(problem, lattice).halo};
-  std::size_t bytes = grid.padded_nodes() * real * (19 + (cells ? 8 : 0));
-  std::size_t vertices = 0;
-  for (const auto& type : lattice.cells) vertices += std::size_t(type.count) * type.vertices;
-  bytes += vertices * (3 * 3 * 8 + 4);      // positions, velocities, forces, cell number
-  bytes += vertices * VertexMotion::bytes_per_vertex(problem.accuracy.vertex_update);
-  if (runs_on_host) bytes += vertices * 8;  // slab keys and order of spreading
-  if (cells && problem.contact.enabled) {
-    const double edge = lattice.contact_range + ContactParameters{}.skin;
-    bytes += vertices * (24 + 16 + 4 * 3) + std::size_t(double(grid.nodes()) / (edge * edge * edge) * 8);
-  }
-  return bytes;
 }
 
 }  // namespace corpuscle

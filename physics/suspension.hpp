@@ -40,7 +40,4 @@ FluidParameters fluid_parameters(const Problem& problem, const LatticeParameters
 std::unique_ptr<Suspension> make_suspension(const Problem& problem, const LatticeParameters& lattice, std::vector<CellType> types,
                                             const std::vector<double>& positions);
 
-/// Bytes that `make_suspension` will allocate: the formula that `plan` prints.
-std::size_t predicted_bytes(const Problem& problem, const LatticeParameters& lattice);
-
 }  // namespace corpuscle

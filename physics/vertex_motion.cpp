@@ -147,6 +147,12 @@ VertexMotion::VertexMotion(const std::vector<CellType>& types, VertexUpdate upda
   smoothed_ = vectors("chebyshev_smoothed", vertex_count);
 }
 
+std::size_t VertexMotion::bytes() const {
+  std::size_t total = (before_.span() + before_that_.span() + drift_.span() + start_forces_.span() + last_.span() + smoothed_.span()) * sizeof(double);
+  for (const auto& type : mobilities_) total += (type.degree.span() + type.neighbour.span()) * sizeof(int);
+  return total;
+}
+
 std::size_t VertexMotion::bytes_per_vertex(VertexUpdate update) {
   const int vectors_kept = update == VertexUpdate::euler ? 0 : update == VertexUpdate::averaged ? 2 : 6;
   return std::size_t(vectors_kept) * 3 * sizeof(double);

@@ -38,8 +38,8 @@ class VertexMotion {
 
   /// Chebyshev stages of the last step; 1 for the other updates.
   int stages() const { return 1 + int(scheme_.stages.size()); }
-  std::size_t bytes() const { return (before_.span() + before_that_.span() + drift_.span() + start_forces_.span() + last_.span() + smoothed_.span()) * sizeof(double); }
-  /// What `bytes` will be.
+  std::size_t bytes() const;
+  /// What `bytes` will be, but for the tables of the types.
   static std::size_t bytes_per_vertex(VertexUpdate update);
 
  private:

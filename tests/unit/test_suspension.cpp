@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/error.hpp"
 #include "io/scene.hpp"
 #include "physics/contact_patches.hpp"
+#include "physics/memory.hpp"
 #include "physics/packing.hpp"
 #include "tests/catch.hpp"
 
@@ -29,55 +29,9 @@ Running start(const std::string& scene) {
   return r;
 }
 
-std::set<std::string> launched;
-void record(const char* name, std::uint32_t, std::uint64_t* id) {
-  launched.insert(name);
-  *id = 0;
-}
-
-/// Names of the kernels that two steps of the scene launch.
-std::set<std::string> kernels_of(const std::string& scene) {
-  const auto r = start(scene);
-  launched.clear();
-  namespace hooks = Kokkos::Tools::Experimental;
-  hooks::set_begin_parallel_for_callback(record);
-  hooks::set_begin_parallel_reduce_callback(record);
-  hooks::set_begin_parallel_scan_callback(record);
-  r.suspension->step();
-  r.suspension->step();
-  hooks::set_begin_parallel_for_callback(nullptr);
-  hooks::set_begin_parallel_reduce_callback(nullptr);
-  hooks::set_begin_parallel_scan_callback(nullptr);
-  return launched;
-}
-
 const std::string fluid_only = "[box]\nsize = [2, 2, 4]\n[accuracy]\nradius = 5\n[run]\nstrain = 1\n";
 
 }  // namespace
-
-TEST_CASE("A scene launches only the kernels that it needs", "[suspension]") {
-  CHECK(kernels_of(fluid_only) == std::set<std::string>{"collide_stream", "exchange_populations", "bounce_back"});
-  CHECK(kernels_of("[box]\nsize = [2, 2, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 5\n[run]\nsteps = 10\n") ==
-        std::set<std::string>{"collide_stream", "exchange_populations"});
-  const std::string one_cell = "[box]\nsize = [4, 4, 4]\n[flow]\ncapillary_number = 0.1\n[accuracy]\nradius = 4\n[run]\nstrain = 1\n[[cells]]\nshape = 'sphere'\ncount = 1\n";
-  const auto with_contact = kernels_of(one_cell);
-  CHECK(with_contact.count("contact_forces") == 1);
-  const auto without = kernels_of(one_cell + "[contact]\nenabled = false\n");
-  for (const auto& name : without) CHECK(name.find("contact") == std::string::npos);
-  for (const char* needed : {"membrane_forces", "spread", "scatter_force", "collide_stream", "gather_velocity", "interpolate", "advance"}) CHECK(without.count(needed) == 1);
-}
-
-TEST_CASE("Stretching forces cost a kernel and memory only where a scene has them", "[suspension]") {
-  const std::string one_cell = "[box]\nsize = [4, 4, 4]\n[flow]\ncapillary_number = 0.1\n[accuracy]\nradius = 4\n[run]\nstrain = 1\n[[cells]]\ncount = 1\n";
-  const std::string stretched = one_cell + "stretch = { force = 0.1, patch_diameter = 0.8 }\n";
-  const auto without = kernels_of(one_cell), none = kernels_of(one_cell + "stretch = { force = 0 }\n");
-  auto with = kernels_of(stretched);
-  CHECK(with.erase("stretching_forces") == 1);
-  CHECK(with == without);
-  CHECK(none == without);
-  CHECK(start(one_cell).suspension->bytes() == start(one_cell + "stretch = { force = 0 }\n").suspension->bytes());
-  CHECK(start(one_cell).suspension->bytes() < start(stretched).suspension->bytes());
-}
 
 TEST_CASE("A stretched cell in a periodic fluid at rest grows along the force, gains no momentum, and its stress leaves the external force out", "[suspension]") {
   const auto r = start("[box]\nsize = [4, 4, 4]\nwalls = false\n[flow]\nkind = 'rest'\n[accuracy]\nradius = 4\nprecision = 'double'\nshear_modulus = 0.02\n[run]\nsteps = 4000\n[[cells]]\nshape = 'sphere'\n"
@@ -106,7 +60,7 @@ TEST_CASE("A scene allocates only what it needs, and as much as predicted", "[su
   CHECK(double(fluid.suspension->bytes()) < nodes * 19 * 4 * std::pow(1.2, 3) + 19 * 4096);
   const auto cells = start("[box]\nsize = [6, 6, 6]\n[flow]\ncapillary_number = 0.1\n[accuracy]\nradius = 6\n[run]\nstrain = 1\n[[cells]]\ncount = 20\n");
   cells.suspension->step();
-  CHECK(double(cells.suspension->bytes()) == Approx(double(predicted_bytes(cells.problem, cells.lattice))).epsilon(0.10));
+  CHECK(double(cells.suspension->bytes()) == Approx(double(predict_memory(cells.problem, cells.lattice).suspension())).epsilon(0.10));
 }
 
 TEST_CASE("Momentum of a periodic suspension at rest stays zero to round-off", "[suspension]") {
