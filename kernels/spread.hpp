@@ -1,5 +1,6 @@
 // Spreading: vertex forces become force density on the nodes, f(x) = sum_v F_v delta(x - x_v).
 #pragma once
+#include "core/unroll.hpp"
 #include "kernels/stencil.hpp"
 
 namespace corpuscle {
@@ -29,9 +30,11 @@ KOKKOS_FORCEINLINE_FUNCTION void spread_vertex(const Stencil<Real, Delta>& stenc
   Real row[4 * width];  // the x-row of nodes lies in one piece in memory: 16 floats for 4 points
   for (int i = 0; i < width; ++i)
     for (int k = 0; k < 4; ++k) row[4 * i + k] = stencil.wx[i] * force[k];
-  for (int k = 0; k < width; ++k)
-    for (int j = 0; j < width; ++j)
+  unroll<width>([&](auto k) {  // a device keeps the row in registers only if its loops have no counters left
+    unroll<width>([&](auto j) {
       Adder::template add_row<width>(field + 4 * std::size_t(stencil.node + grid.offset(0, j, k)), stencil.wy[j] * stencil.wz[k], row);
+    });
+  });
 }
 
 /// One vertex a call, for devices. positions [V][3] unwrapped; forces [V][3]; field [padded nodes][4]; lattice units.

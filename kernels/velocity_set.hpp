@@ -1,18 +1,10 @@
 // D3Q19: directions in opposite pairs (2p+1, 2p+2), weights, speed of sound. Qian, d'Humieres, Lallemand 1992.
 #pragma once
 #include <Kokkos_Macros.hpp>
-#include <type_traits>
+
+#include "core/unroll.hpp"
 
 namespace corpuscle {
-
-/// Calls f(std::integral_constant<int, 0>) ... f(std::integral_constant<int, N-1>): loops whose tables must be compile-time constants.
-template <int N, int I = 0, class F>
-KOKKOS_FORCEINLINE_FUNCTION constexpr void unroll(const F& f) {
-  if constexpr (I < N) {
-    f(std::integral_constant<int, I>{});
-    unroll<N, I + 1>(f);
-  }
-}
 
 /// The first direction of every pair points to +z, or lies in the plane and points to +y or +x: streaming then needs halo planes on few sides,
 /// and walls in z are handled on one slot (kernels/streaming.hpp).
