@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
-"""An ESTIMATE of what the code should reach on GPUs: bytes, operations and atomics counted from the kernels, divided by what the devices can do. Nothing is measured.
+"""An ESTIMATE of what the code should reach on GPUs: bytes, operations and atomics of the kernels, divided by what the devices can do. Nothing is measured.
 
 usage: perf/gpu_roofline.py        prints Markdown tables
 
-The counts follow kernels/: whoever changes a kernel changes its line here.
+Bytes and atomics follow from kernels/; operations are counted there for membranes and rounded estimates elsewhere. Whoever changes a kernel changes its line here.
 """
 
 # Nominal figures of the vendors. Bandwidth (GB/s): NVIDIA A100 80GB and H100 SXM data sheets; AMD MI250X data sheet and CDNA2 white paper, half of it for one
 # GCD. Peaks without matrix units (Tflop/s). Atomics (1e9 additions to scattered addresses a second): one a clock for each slice of L2, 80 at 1.41 GHz, 96 at 1.7 GHz
-# and 32 at 1.7 GHz. That is an assumption, as vendors do not give it, and the least certain number here. Doubles are taken at half the rate.
+# and 32 at 1.7 GHz. That is an assumption, as vendors do not give it, and the least certain number here. Doubles are taken at half the rate. Additions to shared memory:
+# a loop of compare and swap, taken as 8 clocks for 32 lanes of each of 108, 132 and 110 multiprocessors; an assumption too.
 DEVICES = {
-    #                      GB/s   FP32   FP64   atomics (1e9/s)
-    "A100 80GB SXM": dict(bandwidth=2039, fp32=19.5, fp64=9.7, atomics=113),
-    "H100 SXM": dict(bandwidth=3350, fp32=67.0, fp64=34.0, atomics=163),
-    "MI250X, one GCD": dict(bandwidth=1638, fp32=23.9, fp64=23.9, atomics=54),
+    #                      GB/s   FP32   FP64   atomics, shared (1e9/s)
+    "A100 80GB SXM": dict(bandwidth=2039, fp32=19.5, fp64=9.7, atomics=113, shared=610),
+    "H100 SXM": dict(bandwidth=3350, fp32=67.0, fp64=34.0, atomics=163, shared=900),
+    "MI250X, one GCD": dict(bandwidth=1638, fp32=23.9, fp64=23.9, atomics=54, shared=750),
 }
 BANDWIDTH_REACHED = 0.8  # of the data sheet: what lattice Boltzmann codes get on these devices
 FLOPS_REACHED = 0.3      # of the peak: few fused multiply-adds, divisions and roots
@@ -40,8 +41,9 @@ def interpolate(points, real):
 
 
 def membrane(real, bending):
-    """One vertex: position read, force written; tables are shared by all cells and stay in L2. Six triangles and, with bending, twelve edges."""
-    return dict(bytes=2 * 24, flops=6 * (110 + (180 if bending else 0)) + 2 * 40, double=real == 8)
+    """One vertex: position read, force written; tables are shared by all cells and stay in L2. Two triangles with 9 additions to shared memory and, with bending, three
+    edges with 12."""
+    return dict(bytes=2 * 24, flops=2 * 141 + (3 * 158 if bending else 0), shared=18 + (36 if bending else 0), double=real == 8)
 
 
 def contact(neighbours=4):
@@ -55,11 +57,12 @@ def advance():
 
 
 def seconds(count, cost, device):
-    """The slowest of memory, arithmetic and atomics; and which one."""
+    """The slowest of memory, arithmetic and additions to global or shared memory; and which one."""
     times = {
         "bandwidth": count * cost["bytes"] / (BANDWIDTH_REACHED * device["bandwidth"] * 1e9),
         "arithmetic": count * cost["flops"] / (FLOPS_REACHED * device["fp64" if cost["double"] else "fp32"] * 1e12),
         "atomics": count * cost.get("atomics", 0) * (2 if cost["double"] else 1) / (device["atomics"] * 1e9),
+        "shared": count * cost.get("shared", 0) * (2 if cost["double"] else 1) / (device["shared"] * 1e9),
     }
     limit = max(times, key=times.get)
     return times[limit], limit
@@ -86,11 +89,11 @@ def main():
         rates = [f"{1e-6 / seconds(1, fluid(real, forced), device)[0]:.0f}" for forced in (False, True) for real in (4, 8)]
         print(f"| {name} | {' | '.join(rates)} |")
 
-    print(f"\nA coupled step, {NODES / 1e6:.1f} million nodes, {VERTICES / 1e6:.2f} million vertices (ms), estimated; in brackets what limits (b bandwidth, a arithmetic, t atomics):\n")
+    print(f"\nA coupled step, {NODES / 1e6:.1f} million nodes, {VERTICES / 1e6:.2f} million vertices (ms), estimated; in brackets what limits (b bandwidth, a arithmetic, t atomics, s additions to shared memory):\n")
     parts = list(step(4, 4, 4))
     print(f"| device | fluid, membrane, kernel | {' | '.join(parts)} | launches, wait | step |")
     print("|---|---|" + "---|" * (len(parts) + 2))
-    letters = {"bandwidth": "b", "arithmetic": "a", "atomics": "t"}
+    letters = {"bandwidth": "b", "arithmetic": "a", "atomics": "t", "shared": "s"}
     for name, device in DEVICES.items():
         for points, real, membrane_real in ((4, 4, 4), (4, 4, 8), (4, 8, 8), (2, 4, 4)):
             times = [seconds(count, cost, device) for count, cost in step(points, real, membrane_real).values()]
