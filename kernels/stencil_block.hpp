@@ -9,6 +9,7 @@ template <class Real, class Delta>
 class StencilBlock {
  public:
   static constexpr int size = 64;
+  static constexpr int ahead = 16;  ///< vertices between a prefetch and its use
 
   /// Stencils of `count` <= size vertices. positions [V][3] unwrapped, lattice units; vertices: their numbers, or none for `first` and those after it.
   template <bool listed>
@@ -36,6 +37,16 @@ class StencilBlock {
       s.wz[k] = wz_[k][i];
     }
     return s;
+  }
+
+  /// Asks for the nodes of a vertex that comes soon: in a step other operators have driven the field out of the caches since it was touched last.
+  KOKKOS_FORCEINLINE_FUNCTION void prefetch(const int i, const Grid& grid, const Real* const field) const {
+    for (int k = 0; k < Delta::width; ++k)
+      for (int j = 0; j < Delta::width; ++j) {
+        const Real* const row = field + 4 * std::size_t(node_[i] + grid.offset(0, j, k));
+        __builtin_prefetch(row);
+        __builtin_prefetch(row + 4 * Delta::width - 1);
+      }
   }
 
  private:

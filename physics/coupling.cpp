@@ -70,7 +70,9 @@ struct SpreadPencil {
       const int* const vertices = order.data() + first;
       const int count = last - first < stencils.size ? last - first : stencils.size;
       stencils.template fill<true>(grid, box, positions.data(), count, 0, vertices);
+      for (int k = 0; k < stencils.ahead && k < count; ++k) stencils.prefetch(k, local_grid, nodes);
       for (int k = 0; k < count; ++k) {
+        if (k + stencils.ahead < count) stencils.prefetch(k + stencils.ahead, local_grid, nodes);
         const double* const f = force + 3 * std::size_t(vertices[k]);
         spread_vertex<PlainAdder>(stencils[k], Real(f[0]), Real(f[1]), Real(f[2]), local_grid, nodes);
       }
@@ -95,7 +97,11 @@ struct InterpolateBlock {
     const Real* const nodes = field.data();
     StencilBlock<Real, Delta> stencils;
     stencils.template fill<false>(grid, box, positions.data(), count, first, nullptr);
-    for (int k = 0; k < count; ++k) interpolate_vertex(stencils[k], local_grid, nodes, velocity + 3 * k);
+    for (int k = 0; k < stencils.ahead && k < count; ++k) stencils.prefetch(k, local_grid, nodes);
+    for (int k = 0; k < count; ++k) {
+      if (k + stencils.ahead < count) stencils.prefetch(k + stencils.ahead, local_grid, nodes);
+      interpolate_vertex(stencils[k], local_grid, nodes, velocity + 3 * k);
+    }
   }
 };
 

@@ -1,6 +1,7 @@
 #include "physics/fluid.hpp"
 
 #include "core/halo.hpp"
+#include "core/huge_pages.hpp"
 #include "core/lattice_for.hpp"
 #include "core/to_host.hpp"
 #include "kernels/population_halo.hpp"
@@ -86,10 +87,10 @@ Fluid<Storage, Compute>::Fluid(const FluidParameters& parameters)
       relaxation_(parameters.collision == CollisionKind::bgk
                       ? PairRelaxation<Compute>::bgk(parameters.relaxation_time)
                       : PairRelaxation<Compute>::trt(parameters.relaxation_time, parameters.magic_parameter)),
-      populations_("populations", 19, padded_stride<Storage>(grid_.padded_nodes())) {
+      populations_(zeros_on_huge_pages<Populations<Storage>>("populations", 19, padded_stride<Storage>(grid_.padded_nodes()))) {
   if (parameters.needs_force) {
-    force_ = VectorField<Compute>("force", grid_.padded_nodes());
-    velocity_ = VectorField<Compute>("velocity", grid_.padded_nodes());
+    force_ = zeros_on_huge_pages<VectorField<Compute>>("force", grid_.padded_nodes());
+    velocity_ = zeros_on_huge_pages<VectorField<Compute>>("velocity", grid_.padded_nodes());
   }
 }
 
