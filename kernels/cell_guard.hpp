@@ -8,8 +8,8 @@
 
 namespace corpuscle {
 
-/// In the order of their weight: a run is stopped for the first one found.
-enum class CellFault : int { not_a_number, outside, speed, jump, volume, area, collapse, fold, penetration, none };
+/// In the order from cause to consequence: a run is stopped for the first one found. What blows up is too fast before it leaves the box.
+enum class CellFault : int { not_a_number, speed, outside, jump, volume, area, collapse, fold, penetration, none };
 
 /// Lattice units.
 struct CellLimits {
@@ -158,8 +158,8 @@ struct CellGuard {
   }
   KOKKOS_FUNCTION CellFault judge(const CellState& s, const int type) const {
     if (s.broken_vertex != INT32_MAX) return CellFault::not_a_number;
-    if (s.beyond > 0) return CellFault::outside;
     if (s.speed_squared > limits.speed * limits.speed) return CellFault::speed;
+    if (s.beyond > 0) return CellFault::outside;
     if (s.moved > limits.move) return CellFault::jump;
     if (!(Kokkos::fabs(s.volume / tables.reference_volume(type) - 1) <= limits.volume_drift)) return CellFault::volume;
     if (!(Kokkos::fabs(s.area / tables.reference_area(type) - 1) <= limits.area_drift)) return CellFault::area;
