@@ -49,7 +49,7 @@ void check_output(const fs::path& directory, bool overwrite) {
 /// Removes the results of an earlier run, except the packing that this run starts from.
 void remove_outputs(const fs::path& directory, const fs::path& packing_in_use) {
   std::error_code error;
-  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "packing.h5", "scene.toml"})
+  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "broken.vtkhdf", "broken_fluid.vtkhdf", "packing.h5", "scene.toml"})
     if (packing_in_use.empty() || !fs::equivalent(directory / name, packing_in_use, error)) fs::remove(directory / name, error);
 }
 
@@ -76,16 +76,16 @@ class Outputs {
       : file_(directory / "run.h5",
               RunMetadata{to_toml(problem), version_string(), git_revision(), cpu_model(), cpu_cores(), operating_system(), kokkos_configuration()}, lattice,
               RunFileOptions{.trajectories = problem.output.trajectories && !types.empty()}) {
-    VtkDomain domain;
+    directory_ = directory;
+    nodes_ = lattice.nodes;
+    VtkDomain& domain = domain_;
     for (int k = 0; k < 3; ++k) domain.size[k] = lattice.nodes[k];
     domain.periodic[2] = !problem.box.walls;
     domain.radius = lattice.radius;
     domain.at_rest = problem.flow.kind == FlowKind::rest;
-    if (lattice.snapshot_every > 0 && !types.empty()) {
-      std::vector<VtkCellType> surfaces;
-      for (const auto& t : types) surfaces.push_back({t.name, t.reference.faces, t.vertices(), t.count});
-      cells_.emplace(directory / "cells.vtkhdf", std::move(surfaces), domain);
-    }
+    for (const auto& t : types) surfaces_.push_back({t.name, t.reference.faces, t.vertices(), t.count});
+    if (lattice.snapshot_every > 0 && !types.empty()) cells_.emplace(directory / "cells.vtkhdf", surfaces_, domain);
+    with_fluid_ = problem.output.fluid;
     if (lattice.snapshot_every > 0 && problem.output.fluid) fluid_.emplace(directory / "fluid.vtkhdf", lattice.nodes, domain);
   }
   void series(const Sample& sample) {
@@ -99,12 +99,30 @@ class Outputs {
     if (cells_) cells_->append(s);
     if (fluid_) fluid_->append(s);
   }
+  /// The state that a guard stopped, for inspection. Returns a sentence for the user.
+  std::string broken_state(const Suspension& suspension) const {
+    const bool fluid = with_fluid_ || surfaces_.empty();
+    std::string files;
+    try {
+      const Snapshot s = suspension.snapshot(fluid);
+      if (!surfaces_.empty()) VtkHdfPolyData(directory_ / "broken.vtkhdf", surfaces_, domain_).append(s), files = "broken.vtkhdf";
+      if (fluid) VtkHdfImage(directory_ / "broken_fluid.vtkhdf", nodes_, domain_).append(s), files += files.empty() ? "broken_fluid.vtkhdf" : " and broken_fluid.vtkhdf";
+    } catch (const OutputError& failed) {
+      return fmt::format(" The state could not be saved: {}.", failed.what());
+    }
+    return fmt::format(" Look at the state in {}.", files);
+  }
   void flush() {
     const Kokkos::Profiling::ScopedRegion region("write_series");
     file_.flush();
   }
 
  private:
+  fs::path directory_;
+  std::array<int, 3> nodes_{};
+  VtkDomain domain_;
+  std::vector<VtkCellType> surfaces_;
+  bool with_fluid_ = false;
   RunFile file_;
   std::optional<VtkHdfPolyData> cells_;
   std::optional<VtkHdfImage> fluid_;
@@ -121,7 +139,6 @@ struct RunEnd {
 
 /// The time loop: steps, samples, snapshots, progress, guards, until the end, a signal or a failure.
 RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Outputs& outputs, SeriesSummary& series, bool terminal) {
-  constexpr std::int64_t guard_every = 500;    // steps, where samples are further apart: a broken run must not go on for long
   constexpr std::int64_t progress_every = 32;
   ProgressOptions look;
   look.terminal = terminal;
@@ -160,7 +177,7 @@ RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Output
         show(step + 1);
       } else {
         suspension.step();
-        if (step % guard_every == 0) suspension.check();
+        if (step % lattice.guard_every == 0) suspension.check();
         if (step % progress_every == 0) show(step + 1);
       }
     }
@@ -176,7 +193,7 @@ RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Output
     }
   } catch (const SimulationError& broken) {
     end.stopped_by = "guard";
-    end.failure = broken.what();
+    end.failure = broken.what() + outputs.broken_state(suspension);
     end.code = exit_code::broken_run;
   } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
     end.stopped_by = "output error";

@@ -1,6 +1,7 @@
 // The only loops over lattice nodes. Host: threads over (z, y) rows, the compiler vectorises along x (3-6x over flat policies, docs/performance.md);
 // devices: one thread a node.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <type_traits>
 
@@ -36,6 +37,33 @@ struct HostRows {
     } else {
       for (int i = 0; i < length; ++i) local(begin + i, box.x0 + i, y, z);
     }
+  }
+};
+
+template <class Body>
+struct HostRowCounts {
+  Grid grid;
+  LatticeBox box;
+  Body body;
+  CORPUSCLE_FLATTEN void operator()(const int row, std::int64_t& total) const {
+    const int begin = grid.index(box.x0, box.y0 + row % (box.y1 - box.y0), box.z0 + row / (box.y1 - box.y0));
+    const int length = box.length();
+    const Body local = body;
+    int found = 0;
+#pragma omp simd reduction(+ : found)
+    for (int i = 0; i < length; ++i) found += local(begin + i);
+    total += found;
+  }
+};
+
+template <class Body>
+struct DeviceCounts {
+  Grid grid;
+  LatticeBox box;
+  Body body;
+  KOKKOS_FUNCTION void operator()(const int flat, std::int64_t& total) const {
+    const int row = flat / box.length();
+    total += body(grid.index(box.x0 + flat % box.length(), box.y0 + row % (box.y1 - box.y0), box.z0 + row / (box.y1 - box.y0)));
   }
 };
 
@@ -83,6 +111,20 @@ void lattice_for(const std::string& label, const Grid& grid, const LatticeBox& b
   else
     Kokkos::parallel_for(label, Kokkos::RangePolicy<ExecSpace, Kokkos::IndexType<int>>(0, box.rows() * box.length()),
                          detail::DeviceNodes<Body>{grid, box, body});
+}
+
+/// A number that kernels leave on the device.
+using DeviceCount = Kokkos::View<std::int64_t, MemSpace>;
+
+/// Sum of the integers body(node) over the box. It stays in the memory of the device and is not waited for; bodies as in lattice_for.
+template <class Body>
+void lattice_count(const std::string& label, const Grid& grid, const LatticeBox& box, const Body& body, const DeviceCount& total) {
+  if constexpr (runs_on_host)
+    Kokkos::parallel_reduce(label, Kokkos::RangePolicy<ExecSpace, Kokkos::IndexType<int>>(0, box.rows()),
+                            detail::HostRowCounts<Body>{grid, box, body}, total);
+  else
+    Kokkos::parallel_reduce(label, Kokkos::RangePolicy<ExecSpace, Kokkos::IndexType<int>>(0, box.rows() * box.length()),
+                            detail::DeviceCounts<Body>{grid, box, body}, total);
 }
 
 /// Sum of body(node, x, y, z) over the box, the same bits for any number of threads: rows first, then the rows in order.

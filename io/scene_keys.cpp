@@ -88,6 +88,15 @@ const Key table[] = {
     {"accuracy.allow_unstable", CORPUSCLE_FIELD(P.accuracy.allow_unstable), any, "", "", "",
      "What measured stability limits refuse (docs/stability.md) is run with a warning instead"},
 
+    {"guards.every", CORPUSCLE_FIELD(P.guards.every), between(1, 1e9), "", "time steps", "", "Checks are made this often, and with every sample; see docs/reliability.md"},
+    {"guards.speed", CORPUSCLE_FIELD(P.guards.speed), positive(0.5), "", "lattice units", "", "The run is stopped when a vertex or the fluid moves faster"},
+    {"guards.density", CORPUSCLE_FIELD(P.guards.density), positive(0.9), "", "", "", "… when the density of the fluid differs from 1 by more"},
+    {"guards.volume_drift", CORPUSCLE_FIELD(P.guards.volume_drift), positive(10), "", "", "", "… when the volume of a cell differs from that of its reference shape by more than this part of it"},
+    {"guards.area_drift", CORPUSCLE_FIELD(P.guards.area_drift), positive(100), "", "", "", "… when the area of a cell differs from that of its reference shape by more than this part of it"},
+    {"guards.collapse", CORPUSCLE_FIELD(P.guards.collapse), Range{0, 1, false, true}, "", "", "", "… when a triangle has less than this part of its reference area"},
+    {"guards.fold", CORPUSCLE_FIELD(P.guards.fold), Range{90, 180, true, false}, "", "degrees", "", "… when the normals of two neighbouring triangles are further apart; 180: never"},
+    {"guards.penetration", CORPUSCLE_FIELD(P.guards.penetration), positive(1), "", "contact.range", "", "… when a vertex lies deeper inside another cell"},
+
     {"run.strain", CORPUSCLE_FIELD(P.run.strain), positive(1e9), "", "1/γ̇", "", "Length of the run; not with `rest`"},
     {"run.duration", CORPUSCLE_FIELD(P.run.duration), positive(1e9), "", "η₀ r/κ_S", "from strain", "Length of the run instead of strain or steps: needs cells, and may be used with `rest`"},
     {"run.steps", CORPUSCLE_FIELD(P.run.steps), between(1, many_steps), "", "time steps", "from strain", "Length of the run instead of strain; `rest` needs this or `duration`"},
@@ -148,6 +157,10 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "run.duration" || key.section() == "si") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
+  if (key.section() == "guards" && key.name != "guards.every" && key.name != "guards.speed" && key.name != "guards.density") {
+    if (problem.cells.empty()) return only_if(false, "[[cells]]");
+    if (key.name == "guards.penetration") return only_if(problem.contact.enabled, "contact.enabled = true");
+  }
   if (key.name == "run.packing") return only_if(!problem.cells.empty() || problem.run.packing.empty(), "[[cells]]");
   return true;
 }

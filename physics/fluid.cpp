@@ -2,7 +2,6 @@
 
 #include "core/halo.hpp"
 #include "core/huge_pages.hpp"
-#include "core/lattice_for.hpp"
 #include "core/to_host.hpp"
 #include "kernels/population_halo.hpp"
 #include "kernels/vector_halo.hpp"
@@ -69,6 +68,45 @@ struct NodeVelocity {
     populations.load(node, g);
     const auto m = macroscopic<double>(g, uniform_force, 0, 0);
     for (int k = 0; k < 3; ++k) out((z * ny + y) * nx + x, k) = static_cast<Out>(m.u[k]);
+  }
+};
+
+/// 1 where a node is out of bounds or not a number.
+template <class Storage, int Parity>
+struct BrokenNode {
+  StreamingAccessor<Storage, Storage, Parity> populations;
+  Storage uniform_force, density, speed_squared;
+  KOKKOS_FORCEINLINE_FUNCTION int operator()(const int node) const {
+    Storage g[19];
+    populations.load(node, g);
+    const auto m = macroscopic<Storage>(g, uniform_force, 0, 0);
+    const Storage squared = m.u[0] * m.u[0] + m.u[1] * m.u[1] + m.u[2] * m.u[2];
+    return !(Kokkos::fabs(m.density_shift) <= density) | !(squared <= speed_squared);
+  }
+};
+
+/// The smallest number of a broken node, counted through z, y, x.
+template <class Storage, int Parity>
+struct FirstBroken {
+  BrokenNode<Storage, Parity> broken;
+  int nx, ny;
+  Array1<int> first;
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, const int x, const int y, const int z) const {
+    if (broken(node)) Kokkos::atomic_min(&first(0), (z * ny + y) * nx + x);
+  }
+};
+
+template <class Storage, int Parity>
+struct StateOfNode {
+  StreamingAccessor<Storage, double, Parity> populations;
+  double uniform_force;
+  Array1<double> out;
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, int, int, int) const {
+    double g[19];
+    populations.load(node, g);
+    const auto m = macroscopic<double>(g, uniform_force, 0, 0);
+    out(0) = 1 + m.density_shift;
+    out(1) = Kokkos::sqrt(m.u[0] * m.u[0] + m.u[1] * m.u[1] + m.u[2] * m.u[2]);
   }
 };
 
@@ -254,6 +292,36 @@ std::array<double, 3> Fluid<Storage, Compute>::momentum() const {
       sum[k] = lattice_sum("momentum", grid_, interior(grid_), NodeMoment<Storage, decltype(parity)::value>{accessor, parameters_.body_force, k + 1});
   });
   return sum;
+}
+
+template <class Storage, class Compute>
+void Fluid<Storage, Compute>::count_broken(double density, double speed, const DeviceCount& count) const {
+  with_accessor([&](auto accessor, auto parity) {
+    constexpr int P = decltype(parity)::value;
+    lattice_count("guard_nodes", grid_, interior(grid_),
+                  BrokenNode<Storage, P>{{accessor.f, accessor.offsets}, Storage(parameters_.body_force), Storage(density), Storage(speed * speed)}, count);
+  });
+}
+
+template <class Storage, class Compute>
+std::optional<NodeState> Fluid<Storage, Compute>::first_broken(double density, double speed) const {
+  const int none = int(grid_.nodes());
+  std::optional<NodeState> found;
+  with_accessor([&](auto accessor, auto parity) {
+    constexpr int P = decltype(parity)::value;
+    const Array1<int> first("first_broken", 1);
+    Kokkos::deep_copy(first, none);
+    const BrokenNode<Storage, P> broken{{accessor.f, accessor.offsets}, Storage(parameters_.body_force), Storage(density), Storage(speed * speed)};
+    lattice_for("guard_first", grid_, interior(grid_), FirstBroken<Storage, P>{broken, grid_.nx, grid_.ny, first});
+    const int flat = to_host(first)[0];
+    if (flat == none) return;
+    const int x = flat % grid_.nx, y = flat / grid_.nx % grid_.ny, z = flat / (grid_.nx * grid_.ny);
+    const Array1<double> state("state_of_node", 2);
+    lattice_for("guard_first", grid_, {x, x + 1, y, y + 1, z, z + 1}, StateOfNode<Storage, P>{accessor, parameters_.body_force, state});
+    const auto host = to_host(state);
+    found = NodeState{{x, y, z}, host[0], host[1]};
+  });
+  return found;
 }
 
 namespace {

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/grid.hpp"
+#include "core/lattice_for.hpp"
 #include "core/types.hpp"
 #include "kernels/collide_stream.hpp"
 #include "physics/problem.hpp"
@@ -23,6 +25,12 @@ struct FluidParameters {
   std::array<double, 2> wall_velocity{};  ///< along x, lower and upper
   double body_force = 0;             ///< uniform force density along x
   bool needs_force = false;          ///< a force field that changes from node to node (cells)
+};
+
+struct NodeState {
+  std::array<int, 3> node{};
+  double density = 1;
+  double speed = 0;
 };
 
 template <class Storage, class Compute = Storage>
@@ -54,6 +62,11 @@ class Fluid {
   /// Velocities at the present time on the host, [nz][ny][nx][3].
   std::vector<float> velocity_host() const;
   std::vector<double> velocity_host_double() const;
+
+  /// Nodes where |rho - 1| or |u| is larger than this, or not a number. Counted on the device, without waiting.
+  void count_broken(double density, double speed, const DeviceCount& count) const;
+  /// The first of them in the order of z, y, x, if there is one.
+  std::optional<NodeState> first_broken(double density, double speed) const;
 
   const Grid& grid() const { return grid_; }
   const FluidParameters& parameters() const { return parameters_; }

@@ -4,6 +4,7 @@
 
 #include "physics/contact.hpp"
 #include "physics/coupling.hpp"
+#include "physics/guards.hpp"
 #include "physics/packing.hpp"
 #include "physics/suspension.hpp"
 #include "physics/vertex_motion.hpp"
@@ -15,11 +16,17 @@ constexpr std::size_t vector = 3 * sizeof(double);                         // of
 constexpr std::size_t state_of_vertex = 3 * vector + sizeof(int);          // positions, velocities, forces; number of the cell
 constexpr std::size_t largest_degree = 6;                                        // largest degree of a geodesic mesh; files may have a few vertices with more
 constexpr std::size_t sample_of_cell = 26 * sizeof(double);                // CellSampler
+constexpr std::size_t guard_of_cell = sizeof(CellState) + vector + 2 * sizeof(int);
 constexpr std::size_t program_bytes = std::size_t(18) << 20;               // measured with a fluid of a few nodes
 
 std::size_t membrane_tables(const CellTypeLattice& type, std::size_t real) {
   const std::size_t edges = type.moduli.bending > 0 ? type.faces * 3 / 2 : 0;
   return type.faces * (3 * sizeof(int) + 5 * real) + edges * (4 * sizeof(int) + 2 * real);
+}
+
+/// Triangles, edges, reference areas and neighbours of `Guards`.
+std::size_t guard_tables(const CellTypeLattice& type) {
+  return type.faces * (3 * sizeof(int) + sizeof(double)) + type.faces * 3 / 2 * 4 * sizeof(int) + (type.faces * 3 + type.vertices) * sizeof(int);
 }
 
 /// Lists, bins and keys of `Contact`. The number of neighbours depends on how the cells lie: a vertex where two surfaces touch (gap about half the reach)
@@ -62,10 +69,11 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
     vertices += std::size_t(type.count * type.vertices);
     cells += std::size_t(type.count);
     m.tables += membrane_tables(type, real) + type.faces * 3 * sizeof(int);  // the sampler's triangles too
+    m.tables += guard_tables(type);
     packing_tables += membrane_tables(type, sizeof(float));
     if (problem.accuracy.vertex_update == VertexUpdate::chebyshev) m.tables += type.vertices * (1 + largest_degree) * sizeof(int);
   }
-  m.vertices = vertices * (state_of_vertex + VertexMotion::bytes_per_vertex(problem.accuracy.vertex_update)) + cells * sample_of_cell;
+  m.vertices = vertices * (state_of_vertex + VertexMotion::bytes_per_vertex(problem.accuracy.vertex_update)) + cells * (sample_of_cell + guard_of_cell);
   const Grid grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], fluid.halo};
   m.vertices += Coupling<double>::predicted_bytes(grid, problem.accuracy.delta_kernel, vertices);
   const double skin = ContactParameters{}.skin;

@@ -103,6 +103,18 @@ struct AccuracySpec {
   bool allow_unstable = false;               ///< what measured stability limits refuse is run with a warning
 };
 
+/// [guards] when a run is stopped (physics/guards.hpp, docs/reliability.md).
+struct GuardSpec {
+  int every = 100;                           ///< time steps between checks
+  double speed = 0.3;                        ///< of vertices and fluid, lattice units
+  double density = 0.2;                      ///< |rho - 1|
+  double volume_drift = 0.1;                 ///< |V/V_0 - 1| of a cell
+  double area_drift = 3;                     ///< |A/A_0 - 1| of a cell
+  double collapse = 1e-3;                    ///< smallest area of a triangle / its reference area
+  double fold = 175;                         ///< degrees between the normals of two triangles at an edge
+  double penetration = 0.3;                  ///< depth of a vertex below the surface of another cell, in contact.range
+};
+
 /// [run]
 struct RunSpec {
   double strain = 10;                        ///< length of the run in units of 1/shear_rate (rest: ignored)
@@ -129,6 +141,7 @@ struct Problem {
   std::vector<CellSpec> cells;
   ContactSpec contact;
   AccuracySpec accuracy;
+  GuardSpec guards;
   RunSpec run;
   OutputSpec output;
 };

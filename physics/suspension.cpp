@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/error.hpp"
 #include "physics/cell_sampler.hpp"
 #include "physics/contact.hpp"
 #include "physics/coupling.hpp"
+#include "physics/guards.hpp"
 #include "physics/membrane.hpp"
 #include "physics/stretching.hpp"
 #include "physics/suspension_sample.hpp"
@@ -45,8 +45,11 @@ class SuspensionOf final : public Suspension {
   SuspensionOf(const Problem& problem, const LatticeParameters& lattice, std::vector<CellType> types, const std::vector<double>& positions)
       : problem_(problem), lattice_(lattice), fluid_(fluid_parameters(problem, lattice)) {
     fluid_.initialise();
-    if (types.empty()) return;
     const PeriodicBox box(fluid_.grid(), problem.box.walls);
+    if (types.empty()) {
+      guards_ = std::make_unique<Guards>(problem, lattice, box, nullptr);
+      return;
+    }
     cells_ = std::make_unique<Cells>(std::move(types), positions);
     coupling_ = std::make_unique<Coupling<Real>>(fluid_.grid(), problem.box.walls, problem.accuracy.delta_kernel);
     sampler_ = std::make_unique<CellSampler>(*cells_, box);
@@ -56,6 +59,7 @@ class SuspensionOf final : public Suspension {
       contact_ = std::make_unique<Contact>(box, contact_parameters(lattice), cells_->cell_of_vertex());
     if (Stretching::needed(problem)) stretching_ = std::make_unique<Stretching>(problem, lattice, cells_->types());
     motion_ = std::make_unique<VertexMotion>(cells_->types(), problem.accuracy.vertex_update, mobility());
+    guards_ = std::make_unique<Guards>(problem, lattice, box, cells_.get());
   }
 
   void settle() override {
@@ -85,10 +89,10 @@ class SuspensionOf final : public Suspension {
     return s;
   }
 
-  void check() const override;
+  void check() override { guards_->check(fluid_, cells_.get(), contact_.get()); }
   std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
   std::size_t bytes() const override {
-    std::size_t total = fluid_.bytes();
+    std::size_t total = fluid_.bytes() + guards_->bytes();
     if (cells_) total += cells_->bytes() + coupling_->bytes() + sampler_->bytes() + motion_->bytes();
     for (const auto& m : membranes_) total += m->bytes();
     if (contact_) total += contact_->bytes();
@@ -167,6 +171,7 @@ class SuspensionOf final : public Suspension {
   std::unique_ptr<Contact> contact_;
   std::unique_ptr<Stretching> stretching_;
   std::unique_ptr<VertexMotion> motion_;
+  std::unique_ptr<Guards> guards_;
   std::array<double, 2> spread_on_walls_{};
 };
 
@@ -184,29 +189,6 @@ double largest_squared_speed(const VertexVectors& u) {
 template <class Real>
 double SuspensionOf<Real>::velocity_max() const {
   return cells_ ? std::sqrt(largest_squared_speed(cells_->velocities())) : 0.0;
-}
-
-template <class Real>
-void SuspensionOf<Real>::check() const {
-  constexpr double limit = 0.3;
-  if (!cells_) {
-    if (!std::isfinite(fluid_.mass_shift()))
-      throw SimulationError("The fluid became unstable before step " + std::to_string(fluid_.step()) +
-                            " (a density is not a number): lower accuracy.mach_max or flow.reynolds_number_max, or move accuracy.relaxation_time away from 0.5.");
-    return;
-  }
-  if (velocity_max() <= limit) return;
-  const auto x = cells_->positions_host(), u = cells_->velocities_host();
-  for (const auto& type : cells_->types())
-    for (int i = 0; i < type.count * type.vertices(); ++i) {
-      const std::size_t v = 3 * std::size_t(type.first_vertex + i);
-      const double speed = std::sqrt(u[v] * u[v] + u[v + 1] * u[v + 1] + u[v + 2] * u[v + 2]);
-      if (speed <= limit) continue;
-      throw SimulationError("Cell " + std::to_string(type.first_cell + i / type.vertices()) + " (" + type.name + ") became unstable before step " +
-                            std::to_string(fluid_.step()) + ": a vertex near (" + std::to_string(x[v]) + ", " + std::to_string(x[v + 1]) + ", " +
-                            std::to_string(x[v + 2]) + ") moves at " + std::to_string(speed) + " lattice units a step, the limit is " + std::to_string(limit) +
-                            "; likely the membrane is too stiff for the time step: lower accuracy.shear_modulus, membrane.area_dilation or contact.strength.");
-    }
 }
 
 }  // namespace

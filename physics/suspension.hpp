@@ -24,8 +24,8 @@ class Suspension {
   virtual Sample step_and_measure() = 0;
   /// Positions and velocities of all vertices now.
   virtual Snapshot snapshot(bool with_fluid) const = 0;
-  /// @throws SimulationError when a vertex is not a number or too fast (|u| > 0.3): names cell, step and likely cause.
-  virtual void check() const = 0;
+  /// The guards (physics/guards.hpp). @throws SimulationError when the state is no longer physical: names step, cell, place, likely cause and what to change.
+  virtual void check() = 0;
 
   /// Momentum of the fluid, summed over the nodes; constant in a periodic box without body force.
   virtual std::array<double, 3> fluid_momentum() const = 0;

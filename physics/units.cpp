@@ -224,6 +224,7 @@ void set_duration(const Problem& problem, LatticeParameters& lattice) {
   lattice.steps = problem.run.steps ? *problem.run.steps : duration ? steps("run.duration", *duration, lattice.membrane_time) : steps("run.strain", problem.run.strain, unit);
   lattice.series_every = steps("output.series_every", problem.output.series_every, unit);
   lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every, unit) : 0;
+  lattice.guard_every = problem.guards.every;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "core/kernel_log.hpp"
 #include "io/scene.hpp"
+#include "kernels/cell_guard.hpp"
 #include "physics/memory.hpp"
 #include "physics/packing.hpp"
 #include "physics/suspension.hpp"
@@ -72,7 +73,8 @@ TEST_CASE("Fluid alone: one sweep, the halo of the populations, walls where ther
   Observed fluid(channel);
   fluid.steps(3);
   const auto live = fluid.log.live();
-  REQUIRE(live.size() == 1);
+  REQUIRE(live.size() == 2);
+  CHECK(live.at("guard_verdict") == 16);  // all that guards need without cells
   const std::int64_t nodes = 12 * 12 * 22, bytes = live.at("populations");  // with a halo of 1
   CHECK(bytes >= 19 * nodes * 4);
   CHECK(bytes < 19 * (nodes * 4 + 4096 + 192));
@@ -153,6 +155,10 @@ TEST_CASE("Bytes of a scene are those of its models", "[cost]") {
     CHECK(take("cell_values") == 26 * 8);
     CHECK((take_all({"contact", "bin"}) > 0) == c.contact);
     CHECK((take_all({"stretch"}) > 0) == c.stretching);
+    // Guards: faces 12, edges 16 for 3/2 of a face, areas 8 and two entries of 4 in the rings for each edge; the start of each ring; one cell and one type.
+    const std::int64_t guards = (12 + 24 + 8 + 12) * F + 4 * (V + 1) + std::int64_t(sizeof(CellState)) + 24 + 12 + 24 + 16, held = take("guard") - 16;  // the verdict
+    CHECK(held >= guards);
+    CHECK(held < guards + 8 * 14);  // rounded
     take_all({"sort", "spread"});  // order of spreading, only on the host
     CHECK(live == KernelLog::Bytes{});
   }
