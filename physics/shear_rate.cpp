@@ -76,7 +76,8 @@ class ShearRateChoice {
     const double relative = spec.relative_stiffness / l_.viscosity;
     return stiffness_load(stiffness_, l_.cells[i].edge, relative, relative * dilation_ratio(spec), relative * bending_ratio(i));
   }
-  static double dilation_ratio(const CellSpec& spec) { return spec.membrane.law == StrainLawKind::skalak ? spec.membrane.area_dilation : 0; }
+  /// C of a Skalak membrane with the same resistance to dilation: neo-Hookean K = 3 G, Skalak K = (1 + 2 C) G.
+  static double dilation_ratio(const CellSpec& spec) { return spec.membrane.law == StrainLawKind::skalak ? spec.membrane.area_dilation : 1; }
   double bending_ratio(std::size_t i) const { return p_.cells[i].membrane.bending * l_.cells[i].radius * l_.cells[i].radius; }
 
   ModulusLimit moduli_limits(std::size_t i) const {
@@ -120,7 +121,7 @@ class ShearRateChoice {
         const double relative = kappa * spec.relative_stiffness / l_.viscosity, edge = l_.cells[i].edge;
         const double shear = stiffness_load(stiffness_, edge, relative, 0, 0), dilation = stiffness_load(stiffness_, edge, 0, relative * dilation_ratio(spec), 0);
         const double bending = stiffness_load(stiffness_, edge, 0, 0, relative * bending_ratio(i));
-        if (dilation > std::max(shear, bending) && shear + bending < 1)
+        if (spec.membrane.law == StrainLawKind::skalak && dilation > std::max(shear, bending) && shear + bending < 1)
           too_stiff(at + "area_dilation", spec.membrane.area_dilation, spec.membrane.area_dilation * (1 - shear - bending) / dilation, "or lower the modulus");
         else if (bending > std::max(shear, dilation) && shear + dilation < 1)
           too_stiff(at + "bending", spec.membrane.bending, spec.membrane.bending * (1 - shear - dilation) / bending, "or lower the modulus");
