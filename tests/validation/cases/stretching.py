@@ -30,7 +30,7 @@ def scenes():
 
 
 def _replaced(text, key, value):
-    replaced, count = re.subn(rf'(\b{key}\s*=\s*)("[^"]*"|[-+.\w]+)', lambda match: match[1] + value, text, count=1)
+    replaced, count = re.subn(rf'(?m)(^[^#\n]*\b{key}\s*=\s*)("[^"]*"|[-+.\w]+)', lambda match: match[1] + value, text, count=1)
     if count != 1:
         raise ValueError(f"{SCENE.name} has no {key}")
     return replaced
