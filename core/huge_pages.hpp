@@ -11,7 +11,7 @@
 
 namespace corpuscle {
 
-/// A view of zeros; on a Linux host its pages are huge (2 MiB) if transparent huge pages are on "madvise" or "always". 5 to 10 % of a coupled step (docs/performance.md).
+/// A view of zeros; on a Linux host its pages are huge (2 MiB) if transparent huge pages are on "madvise" or "always".
 template <class View, class... Extents>
 View zeros_on_huge_pages(const std::string& label, const Extents... extents) {
   const View view(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), extents...);

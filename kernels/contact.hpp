@@ -24,10 +24,8 @@ struct PairVector {
   bool same_image;
   KOKKOS_FORCEINLINE_FUNCTION PairVector(const PeriodicBox& box, const VertexVectors& x, const int i, const int j) : same_image(true) {
     for (int k = 0; k < 3; ++k) {
-      // As PeriodicBox::nearest, for loops over pairs: the division doesn't depend on the pair and is taken out of them by the compiler, and there is no branch.
-      const double inverse = k == 2 && box.walls ? 0.0 : 1 / box.length[k];
       const double raw = x(i, k) - x(j, k);
-      d[k] = raw - box.length[k] * Kokkos::nearbyint(raw * inverse);
+      d[k] = box.nearest(raw, k);
       same_image = same_image && d[k] == raw;
     }
   }

@@ -76,8 +76,7 @@ class ShearRateChoice {
     const double relative = spec.relative_stiffness / l_.viscosity;
     return stiffness_load(stiffness_, l_.cells[i].edge, relative, relative * dilation_ratio(spec), relative * bending_ratio(i));
   }
-  /// C of a Skalak membrane with the same resistance to dilation: neo-Hookean K = 3 G, Skalak K = (1 + 2 C) G.
-  static double dilation_ratio(const CellSpec& spec) { return spec.membrane.law == StrainLawKind::skalak ? spec.membrane.area_dilation : 1; }
+  static double dilation_ratio(const CellSpec& spec) { return dilation_stiffness(spec.membrane.law, 1, spec.membrane.area_dilation); }
   double bending_ratio(std::size_t i) const { return p_.cells[i].membrane.bending * l_.cells[i].radius * l_.cells[i].radius; }
 
   ModulusLimit moduli_limits(std::size_t i) const {

@@ -116,7 +116,7 @@ double stable_response(const AccuracySpec& accuracy) {
   return eta >= reference_eta ? response_in_flow : power_law(eta, small_eta, response_at_small_tau, reference_eta, response_in_flow);
 }
 
-double dilation_stiffness(const MembraneModuli& m) { return m.law == StrainLawKind::skalak ? m.area_dilation : m.shear; }
+double dilation_stiffness(StrainLawKind law, double shear, double area_dilation) { return law == StrainLawKind::skalak ? area_dilation : shear; }
 
 double stiffness_load(const StiffnessLimits& limits, double edge, double shear, double dilation, double bending) {
   return shear / limits.shear + dilation / limits.dilation + bending / (limits.bending * edge);
@@ -173,7 +173,7 @@ void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
   for (std::size_t i = 0; i < lattice.cells.size(); ++i) {
     const CellTypeLattice& cell = lattice.cells[i];
     const MembraneModuli& m = cell.moduli;
-    add(fmt::format("membrane stiffness of {}", cell.name), stiffness_load(limits, cell.edge, m.shear / eta, dilation_stiffness(m) / eta, m.bending / eta), 1,
+    add(fmt::format("membrane stiffness of {}", cell.name), stiffness_load(limits, cell.edge, m.shear / eta, dilation_stiffness(m.law, m.shear, m.area_dilation) / eta, m.bending / eta), 1,
         "lower accuracy.shear_modulus, or let the program choose it");
     if (m.volume > 0) add(fmt::format("volume force of {}", cell.name), volume_response(cell, m.volume), stable_response(problem.accuracy), fmt::format("lower cells.{}.membrane.volume", i));
     if (m.global_area > 0)

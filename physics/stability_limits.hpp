@@ -27,7 +27,7 @@ double stable_response(const AccuracySpec& accuracy);
 inline constexpr double finest_edge = 0.4, coarsest_edge = 2.5;
 
 /// kappa_alpha of a Skalak membrane with the same resistance to dilation: neo-Hookean K = 3 G, Skalak K = (1 + 2 C) G.
-double dilation_stiffness(const MembraneModuli& moduli);
+double dilation_stiffness(StrainLawKind law, double shear, double area_dilation);
 /// How much of the stable range a membrane uses: shear/limit + dilation/limit + bending/(limit edge), moduli over eta_0. Stable up to 1: the largest eigenvalue of a sum of
 /// stiffness matrices is at most the sum of theirs.
 double stiffness_load(const StiffnessLimits& limits, double edge, double shear, double dilation, double bending);

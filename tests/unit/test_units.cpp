@@ -39,7 +39,7 @@ const Column columns[] = {
 double largest_load(const Problem& problem, const LatticeParameters& lattice) {
   double largest = 0;
   for (const auto& cell : lattice.cells)
-    largest = std::max(largest, stiffness_load(stiffness_limits(problem.accuracy, lattice.phi_effective), cell.edge, cell.moduli.shear / lattice.viscosity, dilation_stiffness(cell.moduli) / lattice.viscosity,
+    largest = std::max(largest, stiffness_load(stiffness_limits(problem.accuracy, lattice.phi_effective), cell.edge, cell.moduli.shear / lattice.viscosity, dilation_stiffness(cell.moduli.law, cell.moduli.shear, cell.moduli.area_dilation) / lattice.viscosity,
                                                cell.moduli.bending / lattice.viscosity));
   return largest;
 }
