@@ -36,7 +36,8 @@ bool writes_fluid(const Problem& problem, const LatticeParameters& lattice) { re
 void check_count(const fs::path& path, std::size_t found, std::int64_t step, std::int64_t every, const char* what) {
   const auto expected = static_cast<std::size_t>((step + every - 1) / every);
   if (found != expected)
-    throw OutputError(fmt::format("{} holds {} {} from before step {} of the checkpoint, but {} were written: it was changed or damaged since; restore it, or start again with corpuscle run",
+    throw OutputError(fmt::format("{} holds {} {} from before step {} of the checkpoint, but {} were written: "
+                                  "it was changed or damaged since; restore it, or start again with corpuscle run",
                                   path.string(), found, what, step, expected));
 }
 
@@ -51,7 +52,8 @@ Outputs::Outputs(const fs::path& directory, const Problem& problem, const Lattic
   if (writes_fluid(problem, lattice)) fluid_.emplace(directory / "fluid.vtkhdf", lattice.nodes, domain);
 }
 
-Outputs Outputs::resume(const fs::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, std::int64_t step) {
+Outputs Outputs::resume(const fs::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types,
+                        std::int64_t step) {
   const std::int64_t last = step - 1;
   const double strain = lattice.shear_rate * double(last);
   const VtkDomain domain = domain_of(problem, lattice);

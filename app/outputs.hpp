@@ -18,7 +18,8 @@ class Outputs {
   Outputs(const std::filesystem::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types);
   /// Those of an earlier run as they were before `step`: what was measured at that step or later is cut off.
   /// @throws OutputError when something from before is missing
-  static Outputs resume(const std::filesystem::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, std::int64_t step);
+  static Outputs resume(const std::filesystem::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types,
+                        std::int64_t step);
 
   void series(const Sample& sample);
   void snapshot(const Suspension& suspension);

@@ -49,8 +49,8 @@ void check_unit_of_length(const Problem& before, const Problem& now) {
 
 void check_same_lattice(const CheckpointFile& file, const LatticeParameters& lattice) {
   if (lattice_numbers(lattice) == file.contents().lattice && lattice.nodes == file.contents().nodes) return;
-  throw InputError(fmt::format("{} was written by version {} ({}), for whose scene this version ({}, {}) chooses other lattice parameters: go on with that version, "
-                               "or fix accuracy.shear_rate and accuracy.shear_modulus in a new run",
+  throw InputError(fmt::format("{} was written by version {} ({}), for whose scene this version ({}, {}) chooses other lattice parameters: "
+                               "go on with that version, or fix accuracy.shear_rate and accuracy.shear_modulus in a new run",
                                file.path().string(), file.contents().version, file.contents().git_revision, version_string(), git_revision()));
 }
 
@@ -80,9 +80,12 @@ int resume(const ResumeOptions& options) {
   const LatticeParameters lattice = to_lattice(problem);
   check_same_lattice(file, lattice);
   if (lattice.steps < from.state.step)
-    throw InputError(fmt::format("--until {}: the run is already at step {}, beyond step {}; give a larger value", options.until, from.state.step, lattice.steps));
+    throw InputError(fmt::format("--until {}: the run is already at step {}, beyond step {}; give a larger value", options.until, from.state.step,
+                                 lattice.steps));
   const bool converts = (problem.accuracy.precision == Precision::double_precision) != file.double_precision();
-  if (converts) notes.push_back(fmt::format("The fluid goes on in {} precision: from here on the run isn't the one that it would have been, bit for bit", options.precision));
+  if (converts)
+    notes.push_back(fmt::format("The fluid goes on in {} precision: from here on the run isn't the one that it would have been, bit for bit",
+                                options.precision));
   print_warnings(notes);
 
   listen_to_signals();
@@ -91,7 +94,8 @@ int resume(const ResumeOptions& options) {
   std::int64_t vertices = 0;
   for (const auto& type : types) vertices += std::int64_t(type.count) * type.vertices();
   if (from.state.positions.size() != 3 * std::size_t(vertices))
-    throw InputError(fmt::format("{} holds {} vertices, but the scene has {}: was the cells' mesh file changed?", file.path().string(), from.state.positions.size() / 3, vertices));
+    throw InputError(fmt::format("{} holds {} vertices, but the scene has {}: was the cells' mesh file changed?", file.path().string(),
+                                 from.state.positions.size() / 3, vertices));
   const auto suspension = make_suspension(problem, lattice, types, from.state.positions);
   suspension->restore(from.state, [&](int direction) { return file.population(direction); });
   SeriesSummary series(lattice, problem.run.discard);

@@ -34,7 +34,8 @@ void check_output(const fs::path& directory, bool overwrite) {
     throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
   for (const char* name : output_names)
     if (!overwrite && fs::exists(directory / name, error))
-      throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); choose another directory, add --overwrite to replace them, or go on with corpuscle resume.",
+      throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); "
+                                   "choose another directory, add --overwrite to replace them, or go on with corpuscle resume.",
                                    directory.string(), name));
 }
 

@@ -19,7 +19,8 @@ class Checkpoints {
   /// After a resume: nothing has to be written until something has been computed.
   void go_on_after(const CheckpointFile& file);
   bool due(std::int64_t step) const;
-  /// Writes one unless this step has one, after everything measured before it has been flushed. @throws SimulationError when the state is no good one, OutputError
+  /// Writes one unless this step has one, after everything measured before it has been flushed. @throws SimulationError when the state is no good one,
+  /// OutputError
   void write(const Suspension& suspension, Outputs& outputs, const SeriesSummary& series, std::int64_t step, double seconds);
   /// Even if this step has one: the scene has changed.
   void forget_last() { last_step_ = -1; }

@@ -107,8 +107,8 @@ std::vector<double> lattice_numbers(const LatticeParameters& lattice) {
                               lattice.wall_velocity, lattice.body_force, lattice.contact_strength, lattice.contact_range};
   for (const auto& type : lattice.cells) {
     const auto& m = type.moduli;
-    numbers.insert(numbers.end(), {double(type.count), double(type.vertices), type.volume, type.area, type.stretching_force, m.shear, m.area_dilation, m.bending,
-                                   m.bending_constant, m.global_area, m.volume});
+    numbers.insert(numbers.end(), {double(type.count), double(type.vertices), type.volume, type.area, type.stretching_force, m.shear, m.area_dilation,
+                                   m.bending, m.bending_constant, m.global_area, m.volume});
   }
   return numbers;
 }
@@ -184,7 +184,8 @@ CheckpointFile::CheckpointFile(const fs::path& path)
 
 Population CheckpointFile::population(int direction) const {
   const std::string name = population_name(direction);
-  const hdf5::Shape expected{static_cast<std::size_t>(contents_.nodes[2]), static_cast<std::size_t>(contents_.nodes[1]), static_cast<std::size_t>(contents_.nodes[0])};
+  const auto& nodes = contents_.nodes;
+  const hdf5::Shape expected{static_cast<std::size_t>(nodes[2]), static_cast<std::size_t>(nodes[1]), static_cast<std::size_t>(nodes[0])};
   if (file_.shape(name) != expected) fail(path(), fmt::format("contradicts itself: {} doesn't have a number for each node", name));
   if (double_precision_) return file_.read<double>(name).values;
   return file_.read<float>(name).values;
@@ -206,7 +207,8 @@ CheckpointFile open_newest_checkpoint(const fs::path& directory, std::vector<std
   }
   if (newest) return std::move(*newest);
   if (any) throw InputError(fmt::format("{} has no whole checkpoint ({}): start the run again with corpuscle run", directory.string(), fmt::join(notes, "; ")));
-  throw InputError(fmt::format("{} holds no checkpoint (checkpoint-a.h5 or checkpoint-b.h5): name the directory of a run that was started with corpuscle run --output",
+  throw InputError(fmt::format("{} holds no checkpoint (checkpoint-a.h5 or checkpoint-b.h5): "
+                               "name the directory of a run that was started with corpuscle run --output",
                                directory.string()));
 }
 

@@ -1,5 +1,5 @@
-// Checkpoints: DIR/checkpoint-a.h5 and checkpoint-b.h5, from which a run goes on bit for bit. The last two are kept; each is written under another name first and carries a hash of all its
-// bytes behind the HDF5 data, so that one that is cut or damaged is known before anything of it is believed.
+// Checkpoints: DIR/checkpoint-a.h5 and checkpoint-b.h5, from which a run goes on bit for bit. The last two are kept; each is written under another name first
+// and carries a hash of all its bytes behind the HDF5 data, so that one that is cut or damaged is known before anything of it is believed.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -37,8 +37,8 @@ class File {
  public:
   /// Creates the file, replacing an older one.
   static File create(const std::filesystem::path& path);
-  /// Opens an existing file for reading and appending, in a transaction (io/hdf5_transaction.hpp): what is done until `close` reaches the file wholly or, after an error, a kill or
-  /// without `close`, not at all.
+  /// Opens an existing file for reading and appending, in a transaction (io/hdf5_transaction.hpp): what is done until `close` reaches the file wholly or,
+  /// after an error, a kill or without `close`, not at all.
   static File open_for_append(const std::filesystem::path& path);
   static File open_for_reading(const std::filesystem::path& path);
 
@@ -100,8 +100,8 @@ class File {
   std::shared_ptr<Transaction> transaction_;  ///< of a file that is open for appending
 };
 
-/// Makes sure that a file can grow by `bytes` (disk, quota, size limits), for a new file only by the disk's free space. Called before open_for_append it tells at once, rather than
-/// after all has been written. Closing the file gives back what wasn't used. @throws OutputError with the system's reason.
+/// Makes sure that a file can grow by `bytes` (disk, quota, size limits), for a new file only by the disk's free space. Called before open_for_append it
+/// tells at once, rather than after all has been written. Closing the file gives back what wasn't used. @throws OutputError with the system's reason.
 void reserve_space(const std::filesystem::path& path, std::size_t bytes);
 
 }  // namespace corpuscle::hdf5

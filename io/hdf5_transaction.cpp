@@ -23,8 +23,8 @@
 namespace corpuscle::hdf5 {
 namespace {
 
-// The journal: this header, then for each change its address, its length and its bytes, then a hash of all before. Numbers as they lie in memory: a journal is read by the machine
-// that wrote it, or by one that shares its disk.
+// The journal: this header, then for each change its address, its length and its bytes, then a hash of all before. Numbers as they lie in memory: a journal
+// is read by the machine that wrote it, or by one that shares its disk.
 constexpr std::array<char, 8> journal_mark{'c', 'o', 'r', 'p', 'j', 'n', 'l', '1'};
 struct JournalHeader {
   std::array<char, 8> mark = journal_mark;
@@ -48,8 +48,9 @@ struct OpenFile {
 }
 
 void append(std::vector<unsigned char>& to, const void* from, std::size_t bytes) {
-  const auto* first = static_cast<const unsigned char*>(from);
-  to.insert(to.end(), first, first + bytes);
+  const std::size_t end = to.size();
+  to.resize(end + bytes);
+  std::memcpy(to.data() + end, from, bytes);
 }
 
 /// Reads what is there; what is behind the end of the file is zero.
@@ -216,7 +217,8 @@ H5FD_t* driver_open(const char* name, unsigned, hid_t, haddr_t) {
   const int file = ::open(name, O_RDWR | O_CLOEXEC);
   if (file < 0) {
     // In the form in which HDF5's own drivers tell the system's reason.
-    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_FILE, H5E_CANTOPENFILE, "unable to open file: error message = '%s'", std::strerror(errno));
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_FILE, H5E_CANTOPENFILE,
+             "unable to open file: error message = '%s'", std::strerror(errno));
     return nullptr;
   }
   auto* opened = new DriverFile{H5FD_t{}, std::make_shared<Transaction>(file)};

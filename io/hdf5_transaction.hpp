@@ -10,10 +10,11 @@
 
 namespace corpuscle::hdf5 {
 
-/// What HDF5 writes into one open file. Bytes behind the old end go straight to the file, where nothing refers to them yet; bytes that would overwrite old ones wait in memory.
-/// `commit` writes those to a journal beside the file first (FILE.journal, with a checksum) and then in place: a kill before the journal is whole leaves the old state, one after it
-/// leaves a journal that `recover` applies. Readers see the old or the new state, but for the microseconds of the last step.
-/// No write fails towards HDF5, which cannot close a file after a failed write: the first failure is kept and thrown by `commit`, and the file stays as it was.
+/// What HDF5 writes into one open file. Bytes behind the old end go straight to the file, where nothing refers to them yet; bytes that would overwrite old
+/// ones wait in memory. `commit` writes those to a journal beside the file first (FILE.journal, with a checksum) and then in place: a kill before the journal
+/// is whole leaves the old state, one after it leaves a journal that `recover` applies. Readers see the old or the new state, but for the microseconds of the
+/// last step. No write fails towards HDF5, which cannot close a file after a failed write: the first failure is kept and thrown by `commit`, and the file
+/// stays as it was.
 class Transaction {
  public:
   explicit Transaction(int file) : file_(file) {}
@@ -56,7 +57,8 @@ class Transaction {
 void use_transactions(std::int64_t file_access);
 std::shared_ptr<Transaction> transaction_of(std::int64_t file);
 
-/// Finishes or removes what a process that was killed while it changed the file has left. Opening a file for appending does this too; for files that are only read.
+/// Finishes or removes what a process that was killed while it changed the file has left. Opening a file for appending does this too; for files that are only
+/// read.
 /// @returns whether the file was changed. @throws OutputError when the file can't be written.
 bool recover(const std::filesystem::path& path);
 /// Where the journal of a file lies.

@@ -35,8 +35,8 @@ class RunFile {
   /// Creates the file (replacing an older one) with all metadata and empty series.
   /// @throws OutputError when the file can't be written.
   RunFile(std::filesystem::path path, const RunMetadata& metadata, const LatticeParameters& lattice, RunFileOptions options = {});
-  /// Continues the file of an interrupted run after `step`: later samples are cut off. Whether /cells is written is taken from the file; a dataset that an older version did not
-  /// write is added, with NaN until now.
+  /// Continues the file of an interrupted run after `step`: later samples are cut off. Whether /cells is written is taken from the file; a dataset that an
+  /// older version did not write is added, with NaN until now.
   /// @throws OutputError when the file is missing or isn't a run.h5.
   static RunFile resume(std::filesystem::path path, std::int64_t step, RunFileOptions options = {});
 

@@ -1,5 +1,5 @@
-// What the next time steps of a suspension depend on, on the host: nothing else has to be kept to go on bit for bit. Lists of contacts, forces and whatever else a step computes
-// from it are not part of it; random numbers are functions of counters.
+// What the next time steps of a suspension depend on, on the host: nothing else has to be kept to go on bit for bit. Lists of contacts, forces and whatever
+// else a step computes from it are not part of it; random numbers are functions of counters.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -22,8 +22,8 @@ struct SuspensionState {
   VertexMotionState motion;
 };
 
-/// One of the 19 populations before the collision of the coming step at all nodes, [nz][ny][nx], shifted by its weight (kernels/velocity_set.hpp), in the precision of the run.
-/// Where it lies in memory depends on the parity of the step and on the backend; this does not.
+/// One of the 19 populations before the collision of the coming step at all nodes, [nz][ny][nx], shifted by its weight (kernels/velocity_set.hpp), in the
+/// precision of the run. Where it lies in memory depends on the parity of the step and on the backend; this does not.
 using Population = std::variant<std::vector<float>, std::vector<double>>;
 /// Gives the population of a direction 0 ... 18. Asked in ascending order.
 using PopulationSource = std::function<Population(int direction)>;

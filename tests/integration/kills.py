@@ -1,4 +1,5 @@
-"""A run that is killed (SIGKILL) again and again and resumed gives the same files as one that never stopped. As a program: kills.py PROGRAM [--kills N]; test_resume.py has a few."""
+"""A run that is killed (SIGKILL) again and again and resumed gives the same files as one that never stopped.
+As a program: kills.py PROGRAM [--kills N]; test_resume.py has a few."""
 import argparse
 import pathlib
 import random
@@ -54,7 +55,8 @@ def differences(a, b, files=FILES):
         assert x.keys() == y.keys(), f"{file}: other datasets: {x.keys() ^ y.keys()}"
         for name in x:
             compared += 1
-            if not (x[name].shape == y[name].shape and x[name].dtype == y[name].dtype and np.array_equal(x[name], y[name], equal_nan=x[name].dtype.kind == "f")):
+            u, v = x[name], y[name]
+            if not (u.shape == v.shape and u.dtype == v.dtype and np.array_equal(u, v, equal_nan=u.dtype.kind == "f")):
                 different.append(f"{file}:{name}")
     return different, compared
 
@@ -75,7 +77,8 @@ def start(program, scene, output):
 
 
 def kill_and_resume(program, scene, output, kills, rng, longest):
-    """Kills the run after random times, and resumes with one or two threads, until it has been killed so often or is through; then lets it finish. Returns how often it was killed."""
+    """Kills the run after random times, and resumes with one or two threads, until it has been killed so often or is through; then lets it finish.
+    Returns how often it was killed, and after how many kills all files could be read at once."""
     process = start(program, scene, output)
     killed = readable = 0
     while True:
@@ -91,7 +94,8 @@ def kill_and_resume(program, scene, output, kills, rng, longest):
         process.stderr.close()
         if process.returncode == 0 or killed == kills:
             break
-        process = subprocess.Popen([program, "resume", output, "--threads", str(rng.choice((1, 2)))], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        threads = str(rng.choice((1, 2)))
+        process = subprocess.Popen([program, "resume", output, "--threads", threads], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     command(program, "resume", output)
     return killed, readable
 

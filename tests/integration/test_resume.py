@@ -1,4 +1,5 @@
-"""Checkpoints from the outside: a run that is extended, killed, or stopped by a signal or the wall time goes on bit for bit. Arguments: PROGRAM SOURCE-FOLDER."""
+"""Checkpoints from the outside: a run that is extended, killed, or stopped by a signal or the wall time goes on bit for bit.
+Arguments: PROGRAM SOURCE-FOLDER."""
 import json
 import pathlib
 import random
@@ -90,7 +91,8 @@ def check_stops(program, folder, reference):
 def check_wall_time(program, folder, reference):
     """A run that would take days stops after two seconds, and once more; then its end is set to where it has come to, and it equals one of that length."""
     output, packing = folder / "wall-time", f'run.packing="{reference / "packing.h5"}"'  # of packing nothing is kept, so it must not be where the time goes
-    command(program, "run", folder / "kills.toml", "--output", output, "--set", packing, "--set", "run.steps=100000000", "--wall-time", "00:00:02", "--threads", 1, check=75)
+    command(program, "run", folder / "kills.toml", "--output", output, "--set", packing, "--set", "run.steps=100000000", "--wall-time", "00:00:02",
+            "--threads", 1, check=75)
     command(program, "resume", output, "--wall-time", "0-00:00:01", "--threads", 1, check=75)
     summary = json.loads((output / "summary.json").read_text())
     assert summary["stopped_by"] == "wall time", summary
