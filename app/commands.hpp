@@ -20,8 +20,19 @@ struct RunOptions : SceneOptions {
   std::string output;
   bool overwrite = false;
   bool profile = false;  ///< print and store the time of each operator
+  std::string wall_time;  ///< [DAYS-]HH:MM:SS after which it stops with a checkpoint; empty: no limit
 };
 int run(const RunOptions& options);
+
+struct ResumeOptions {
+  std::string directory;
+  std::string until;      ///< strain=X, steps=N or duration=X: another length of the run; empty: that of the scene
+  std::string precision;  ///< single or double: another one than the scene's; empty: that of the scene
+  std::string wall_time;
+  bool profile = false;
+  int threads = 0;
+};
+int resume(const ResumeOptions& options);
 
 struct StabilityOptions {
   std::string output = "results/stability";  ///< directory of stability.json; a search that was interrupted goes on there

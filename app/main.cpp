@@ -15,11 +15,12 @@ lattice Boltzmann fluid, immersed boundary coupling, finite element membranes.
 Start here:
   corpuscle plan scenes/quickstart.toml                      what would run, how long, how much memory
   corpuscle run  scenes/quickstart.toml --output results/a   run it; Ctrl-C stops cleanly, all data are kept
+  corpuscle resume results/a                                 go on where it was stopped or killed
   corpuscle run  scenes/quickstart.toml --output results/b --set flow.capillary_number=0.02 --set run.strain=5)";
 
 constexpr const char* ending = R"(A scene is a small TOML file, all keys are in docs/scene.md; what a run writes is in docs/outputs.md.
 Exit codes: 0 done, 1 unexpected error or failed output, 2 bad input (nothing was written), 3 the simulation became
-unstable, 130 stopped by Ctrl-C or SIGTERM.)";
+unstable, 75 stopped by --wall-time or SIGUSR1 (resume goes on), 130 stopped by Ctrl-C or SIGTERM (resume goes on).)";
 
 void add_scene_options(CLI::App& command, corpuscle::app::SceneOptions& options) {
   command.add_option("SCENE", options.scene, "Scene file (TOML)")->required();
@@ -60,6 +61,19 @@ int main(int argc, char** argv) {
   run->add_flag("--overwrite", run_options.overwrite, "Replace the results of an earlier run in that directory");
   run->add_flag("--profile", run_options.profile, "Print the time of each operator at the end, and write it into summary.json");
 
+  constexpr const char* about_wall_time = "Stop with a checkpoint after this time, counted from the start of the program (exit code 75)";
+  run->add_option("--wall-time", run_options.wall_time, about_wall_time)->type_name("HH:MM:SS");
+
+  app::ResumeOptions resume_options;
+  auto* resume = program.add_subcommand("resume", "Go on with a run that was stopped or killed, or make a finished one longer; the same bits as if it had never stopped");
+  resume->add_option("DIR", resume_options.directory, "Directory of the run")->required();
+  resume->add_option("--until", resume_options.until, "New length of the run: strain=X, steps=N or duration=X (default: that of the scene)")->type_name("KEY=VALUE");
+  resume->add_option("--wall-time", resume_options.wall_time, about_wall_time)->type_name("HH:MM:SS");
+  resume->add_option("--precision", resume_options.precision, "Go on with the fluid in single or double precision (default: as before)")
+      ->check(CLI::IsMember({"single", "double"}));
+  resume->add_option("--threads", resume_options.threads, "Number of host threads (default: OMP_NUM_THREADS, else all cores)")->type_name("N")->check(CLI::Range(1, 4096));
+  resume->add_flag("--profile", resume_options.profile, "Print the time of each operator at the end, and write it into summary.json");
+
   app::StabilityOptions stability_options;
   auto* stability = program.add_subcommand("stability", "Search for the stability limits that plan and run use (docs/stability.md); an interrupted search goes on where it stopped");
   stability->add_option("-o,--output", stability_options.output, "Directory of the results, stability.json (default: results/stability)")->type_name("DIR");
@@ -75,6 +89,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (*stability) return app::stability(stability_options);
+    if (*resume) return app::resume(resume_options);
     return *plan ? app::plan(plan_options) : app::run(run_options);
   } catch (const InputError& error) {
     return fail(exit_code::bad_input, error.what());

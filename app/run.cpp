@@ -1,36 +1,29 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <Kokkos_Profiling_ScopedRegion.hpp>
-
-#include <atomic>
-#include <csignal>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/machine.hpp"
-#include "app/profile.hpp"
+#include "app/time_loop.hpp"
 #include "core/error.hpp"
-#include "core/version.hpp"
 #include "io/packing_file.hpp"
 #include "io/progress.hpp"
-#include "io/run_file.hpp"
 #include "io/scene.hpp"
-#include "io/summary.hpp"
-#include "io/vtkhdf.hpp"
 #include "physics/packing.hpp"
-#include "physics/suspension.hpp"
 
 namespace corpuscle::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::atomic<bool> interrupted{false};
-extern "C" void on_signal(int) { interrupted = true; }
+constexpr std::array output_names{"checkpoint-a.h5", "checkpoint-b.h5",      "checkpoint.tmp", "run.h5",
+                                  "run.h5.journal",  "summary.json",         "cells.vtkhdf",   "cells.vtkhdf.journal",
+                                  "fluid.vtkhdf",    "fluid.vtkhdf.journal", "broken.vtkhdf",  "broken.vtkhdf.journal",
+                                  "broken_fluid.vtkhdf", "broken_fluid.vtkhdf.journal"};
 
 /// Refuses directories that hold results or cannot be written; creates nothing.
 void check_output(const fs::path& directory, bool overwrite) {
@@ -41,20 +34,24 @@ void check_output(const fs::path& directory, bool overwrite) {
     throw InputError(fmt::format("--output {}: {} is not a directory; choose another place.", directory.string(), existing.string()));
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
-  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf"})
+  for (const char* name : output_names)
     if (!overwrite && fs::exists(directory / name, error))
-      throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); choose another directory, or add --overwrite to replace them.", directory.string(), name));
+      throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); "
+                                   "choose another directory, add --overwrite to replace them, or go on with corpuscle resume.",
+                                   directory.string(), name));
 }
 
 /// Removes the results of an earlier run, except the packing that this run starts from.
 void remove_outputs(const fs::path& directory, const fs::path& packing_in_use) {
   std::error_code error;
-  for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf", "broken.vtkhdf", "broken_fluid.vtkhdf", "packing.h5", "scene.toml"})
+  for (const char* name : output_names) fs::remove(directory / name, error);
+  for (const char* name : {"packing.h5", "scene.toml"})
     if (packing_in_use.empty() || !fs::equivalent(directory / name, packing_in_use, error)) fs::remove(directory / name, error);
 }
 
 /// Packs with a line that tells how far it is: redrawn on a terminal, every tenth in a log.
-std::vector<double> pack(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, bool terminal) {
+std::vector<double> pack(const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types, const WallTime& wall_time) {
+  const bool terminal = stream_is_terminal(stdout);
   int shown = -1;
   const auto positions = place_cells(problem, lattice, types, [&](double scale, double gap, int rounds) {
     const int percent = int(100 * scale);
@@ -63,164 +60,17 @@ std::vector<double> pack(const Problem& problem, const LatticeParameters& lattic
     else if (percent / 10 > shown)
       std::cout << fmt::format("packing: cells at {} % of their size, round {}\n", percent, rounds) << std::flush;
     shown = std::max(shown, percent / 10);
-    return !interrupted;
+    return signal_received() == Stop::none && !wall_time.over(0);
   });
   if (terminal && shown >= 0) std::cout << "\n";
   return positions;
-}
-
-/// Everything that a run writes.
-class Outputs {
- public:
-  Outputs(const fs::path& directory, const Problem& problem, const LatticeParameters& lattice, const std::vector<CellType>& types)
-      : file_(directory / "run.h5",
-              RunMetadata{to_toml(problem), version_string(), git_revision(), cpu_model(), cpu_cores(), operating_system(), kokkos_configuration()}, lattice,
-              RunFileOptions{.trajectories = problem.output.trajectories && !types.empty()}) {
-    directory_ = directory;
-    nodes_ = lattice.nodes;
-    VtkDomain& domain = domain_;
-    for (int k = 0; k < 3; ++k) domain.size[k] = lattice.nodes[k];
-    domain.periodic[2] = !problem.box.walls;
-    domain.radius = lattice.radius;
-    domain.at_rest = problem.flow.kind == FlowKind::rest;
-    for (const auto& t : types) surfaces_.push_back({t.name, t.reference.faces, t.vertices(), t.count});
-    if (lattice.snapshot_every > 0 && !types.empty()) cells_.emplace(directory / "cells.vtkhdf", surfaces_, domain);
-    with_fluid_ = problem.output.fluid;
-    if (lattice.snapshot_every > 0 && problem.output.fluid) fluid_.emplace(directory / "fluid.vtkhdf", lattice.nodes, domain);
-  }
-  void series(const Sample& sample) {
-    const Kokkos::Profiling::ScopedRegion region("write_series");
-    file_.append(sample);
-  }
-  void snapshot(const Suspension& suspension) {
-    if (!cells_ && !fluid_) return;
-    const Kokkos::Profiling::ScopedRegion region("write_snapshot");
-    const Snapshot s = suspension.snapshot(fluid_.has_value());
-    if (cells_) cells_->append(s);
-    if (fluid_) fluid_->append(s);
-  }
-  /// The state that a guard stopped, for inspection. Returns a sentence for the user.
-  std::string broken_state(const Suspension& suspension) const {
-    const bool fluid = with_fluid_ || surfaces_.empty();
-    std::string files;
-    try {
-      const Snapshot s = suspension.snapshot(fluid);
-      if (!surfaces_.empty()) VtkHdfPolyData(directory_ / "broken.vtkhdf", surfaces_, domain_).append(s), files = "broken.vtkhdf";
-      if (fluid) VtkHdfImage(directory_ / "broken_fluid.vtkhdf", nodes_, domain_).append(s), files += files.empty() ? "broken_fluid.vtkhdf" : " and broken_fluid.vtkhdf";
-    } catch (const OutputError& failed) {
-      return fmt::format(" The state could not be saved: {}.", failed.what());
-    }
-    return fmt::format(" Look at the state in {}.", files);
-  }
-  void flush() {
-    const Kokkos::Profiling::ScopedRegion region("write_series");
-    file_.flush();
-  }
-
- private:
-  fs::path directory_;
-  std::array<int, 3> nodes_{};
-  VtkDomain domain_;
-  std::vector<VtkCellType> surfaces_;
-  bool with_fluid_ = false;
-  RunFile file_;
-  std::optional<VtkHdfPolyData> cells_;
-  std::optional<VtkHdfImage> fluid_;
-};
-
-/// How the time loop ended.
-struct RunEnd {
-  std::int64_t steps = 0;
-  double seconds = 0;
-  int code = exit_code::success;
-  std::string stopped_by = "end";
-  std::string failure;  ///< message for the user; empty when all went well
-};
-
-/// The time loop: steps, samples, snapshots, progress, guards, until the end, a signal or a failure.
-RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Outputs& outputs, SeriesSummary& series, bool terminal) {
-  constexpr std::int64_t progress_every = 32;
-  ProgressOptions look;
-  look.terminal = terminal;
-  look.unicode = locale_is_unicode();
-  look.last_step = lattice.steps;
-  look.last_strain = lattice.shear_rate * double(lattice.steps);
-  Progress progress(std::cout, look);
-  ProgressState state;
-  const Kokkos::Timer timer;
-  const auto show = [&](std::int64_t steps_done) {
-    state.step = steps_done;
-    state.strain = lattice.shear_rate * double(steps_done);
-    state.mlups = lattice.box_volume() * double(steps_done) / timer.seconds() / 1e6;
-    progress.update(state);
-  };
-
-  RunEnd end;
-  try {
-    for (; end.steps < lattice.steps; ++end.steps) {
-      const std::int64_t step = end.steps;
-      if (interrupted) {
-        end.stopped_by = "interrupt";
-        end.code = exit_code::interrupted;
-        break;
-      }
-      if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) outputs.snapshot(suspension);
-      if (step % lattice.series_every == 0) {
-        const Sample sample = suspension.step_and_measure();
-        suspension.check();
-        outputs.series(sample);
-        series.add(sample);
-        const auto viscosity = series.relative_viscosity();
-        state.relative_viscosity = viscosity.mean;
-        state.relative_viscosity_error = viscosity.error;
-        state.volume_drift_max = sample.volume_drift_max;
-        show(step + 1);
-      } else {
-        suspension.step();
-        if (step % lattice.guard_every == 0) suspension.check();
-        if (step % progress_every == 0) show(step + 1);
-      }
-    }
-    if (end.steps == lattice.steps) {
-      if (lattice.snapshot_every > 0) outputs.snapshot(suspension);
-      // What a step measures is the state at its beginning: one more for the state at the end.
-      const Sample sample = suspension.step_and_measure();
-      suspension.check();
-      outputs.series(sample);
-      series.add(sample);
-    } else if (lattice.snapshot_every > 0) {
-      outputs.snapshot(suspension);
-    }
-  } catch (const SimulationError& broken) {
-    end.stopped_by = "guard";
-    end.failure = broken.what() + outputs.broken_state(suspension);
-    end.code = exit_code::broken_run;
-  } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
-    end.stopped_by = "output error";
-    end.failure = failed.what();
-    end.code = exit_code::failure;
-  }
-  Kokkos::fence();
-  end.seconds = timer.seconds();
-  show(end.steps);
-  progress.finish(end.stopped_by);
-  return end;
-}
-
-std::string result_line(const Summary& s, const fs::path& directory) {
-  std::string text = fmt::format("{} steps in {} ({:.1f} MLUPS)", s.steps, format_duration(s.wall_seconds), s.mlups);
-  if (std::isfinite(s.relative_viscosity.mean)) {
-    text += fmt::format("; relative viscosity {:.4f}", s.relative_viscosity.mean);
-    if (std::isfinite(s.relative_viscosity.error)) text += fmt::format(" +- {:.4f}", s.relative_viscosity.error);
-    if (s.cell_count > 0 && !s.converged) text += " (not converged: the averaged part is shorter than 20 correlation times)";
-  }
-  return text + fmt::format("; results in {}", directory.string());
 }
 
 }  // namespace
 
 int run(const RunOptions& options) {
   const fs::path directory = options.output;
+  const WallTime wall_time(options.wall_time.empty() ? 0 : parse_wall_time(options.wall_time));
   const Problem problem = read_scene(options.scene, options.overrides);
   const LatticeParameters lattice = to_lattice(problem);
   check_output(directory, options.overwrite);
@@ -230,14 +80,12 @@ int run(const RunOptions& options) {
   const bool packed_before = !problem.run.packing.empty();
   if (packed_before) packing = load_packing(problem.run.packing, packing);
 
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  listen_to_signals();
   const KokkosSession session(options.threads);
-  const bool terminal = stream_is_terminal(stdout);
   try {
-    if (!packed_before) packing.positions = pack(problem, lattice, types, terminal);
+    if (!packed_before) packing.positions = pack(problem, lattice, types, wall_time);
   } catch (const InputError&) {
-    if (!interrupted) throw;
+    if (signal_received() == Stop::none && !wall_time.over(0)) throw;
     std::cerr << "error: Stopped while packing; nothing was written." << std::endl;
     return exit_code::interrupted;
   }
@@ -260,37 +108,11 @@ int run(const RunOptions& options) {
     if (!existed) fs::remove(directory, error);
     throw InputError(fmt::format("--output {}: {}; make room or choose another place.", directory.string(), failed.what()));
   }
-  Outputs& outputs = *created;
   packing.positions = {};
   if (packs_cells(problem, types)) suspension->settle();
   SeriesSummary series(lattice, problem.run.discard);
-  std::optional<Profile> profile;
-  if (options.profile) profile.emplace();
-  const RunEnd end = simulate(lattice, *suspension, outputs, series, terminal);
-
-  Summary summary = series.result();
-  summary.steps = end.steps;
-  summary.strain = lattice.shear_rate * double(end.steps);
-  summary.wall_seconds = end.seconds;
-  summary.mlups = lattice.box_volume() * double(end.steps) / end.seconds / 1e6;
-  summary.threads = Kokkos::DefaultExecutionSpace().concurrency();
-  summary.bytes_peak = peak_memory_bytes();
-  summary.stopped_by = end.stopped_by;
-  summary.warnings = lattice.warnings;
-  std::string failure = end.failure;
-  int code = end.code;
-  try {
-    outputs.flush();
-    if (profile) summary.profile = profile->times();
-    write_summary(directory / "summary.json", summary);
-  } catch (const OutputError& failed) {
-    if (failure.empty()) failure = failed.what();
-    if (code == exit_code::success) code = exit_code::failure;
-  }
-  if (profile) std::cout << profile_table(summary.profile);
-  std::cout << result_line(summary, directory) << std::endl;
-  if (!failure.empty()) std::cerr << "error: " << failure << " What was written until then is kept in " << directory.string() << "." << std::endl;
-  return code;
+  Checkpoints checkpoints(directory, problem, lattice);
+  return run_to_end({directory, lattice, *suspension, *created, series, checkpoints, 0, 0, wall_time, options.profile});
 }
 
 }  // namespace corpuscle::app

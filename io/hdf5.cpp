@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "io/hdf5_transaction.hpp"
 
 namespace corpuscle::hdf5 {
 namespace {
@@ -131,8 +132,12 @@ void reserve_space(const std::filesystem::path& path, std::size_t bytes) {
 #endif
 }
 
+File::File(std::int64_t id, std::filesystem::path path) : id_(id), path_(std::move(path)) {}
+
 File File::create(const std::filesystem::path& path) {
   prepare_library();
+  std::error_code ignored;
+  std::filesystem::remove(journal_path(path), ignored);  // of a file of this name that is no more
   const Handle access(file_access(), H5Pclose);
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   if (id < 0) fail_path(path, "creating the file");
@@ -141,10 +146,15 @@ File File::create(const std::filesystem::path& path) {
 
 File File::open_for_append(const std::filesystem::path& path) {
   prepare_library();
+  recover(path);
   const Handle access(file_access(), H5Pclose);
+  use_transactions(access);
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
   if (id < 0) fail_path(path, "opening the file for writing");
-  return {id, path};
+  File file(id, path);
+  file.transaction_ = transaction_of(id);
+  file.transaction_->begin(file.transaction_->allocated);
+  return file;
 }
 
 File File::open_for_reading(const std::filesystem::path& path) {
@@ -155,11 +165,13 @@ File File::open_for_reading(const std::filesystem::path& path) {
   return {id, path};
 }
 
-File::File(File&& other) noexcept : id_(std::exchange(other.id_, -1)), path_(std::move(other.path_)) {}
+File::File(File&& other) noexcept
+    : id_(std::exchange(other.id_, -1)), path_(std::move(other.path_)), transaction_(std::move(other.transaction_)) {}
 
 File& File::operator=(File&& other) noexcept {
   std::swap(id_, other.id_);
   std::swap(path_, other.path_);
+  std::swap(transaction_, other.transaction_);
   return *this;
 }
 
@@ -171,6 +183,8 @@ void File::close() {
   if (id_ < 0) return;
   check(H5Fflush(id_, H5F_SCOPE_GLOBAL), "writing to disk");
   check(H5Fclose(std::exchange(id_, -1)), "closing the file");
+  const auto transaction = std::move(transaction_);
+  if (transaction) transaction->commit(path_);
 }
 
 void File::fail(const std::string& doing) const { fail_path(path_, doing); }
@@ -280,6 +294,7 @@ void File::write(const std::string& name, std::span<const T> values, const Shape
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
   const Handle data(check(H5Dcreate2(id_, name.c_str(), native_type<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT), doing), H5Dclose);
+  if (values.empty()) return;  // HDF5 refuses to write nothing from nowhere
   check(H5Dwrite(data, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), doing);
 }
 
@@ -370,7 +385,7 @@ Array<T> File::read(const std::string& name) const {
   Array<T> result{shape(name), {}};
   result.values.resize(product(result.shape));
   const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), doing), H5Dclose);
-  check(H5Dread(data, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()), doing);
+  if (!result.values.empty()) check(H5Dread(data, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()), doing);
   return result;
 }
 

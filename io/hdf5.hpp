@@ -4,11 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace corpuscle::hdf5 {
+
+class Transaction;
 
 using Shape = std::vector<std::size_t>;
 
@@ -34,7 +37,8 @@ class File {
  public:
   /// Creates the file, replacing an older one.
   static File create(const std::filesystem::path& path);
-  /// Opens an existing file for reading and appending.
+  /// Opens an existing file for reading and appending, in a transaction (io/hdf5_transaction.hpp): what is done until `close` reaches the file wholly or,
+  /// after an error, a kill or without `close`, not at all.
   static File open_for_append(const std::filesystem::path& path);
   static File open_for_reading(const std::filesystem::path& path);
 
@@ -86,18 +90,18 @@ class File {
   Array<T> read(const std::string& name) const;
 
  private:
-  File(std::int64_t id, std::filesystem::path path) : id_(id), path_(std::move(path)) {}
+  File(std::int64_t id, std::filesystem::path path);
   void set_numbers(const std::string& object, const std::string& name, std::int64_t type, const void* values, std::size_t count, bool scalar);
   [[noreturn]] void fail(const std::string& doing) const;
   std::int64_t check(std::int64_t result, const std::string& doing) const;
 
   std::int64_t id_ = -1;
   std::filesystem::path path_;
+  std::shared_ptr<Transaction> transaction_;  ///< of a file that is open for appending
 };
 
-/// Makes sure that a file can grow by `bytes` (disk, quota, size limits), for a new file only by the disk's free space. To be called before
-/// open_for_append: a write that fails half-way would damage what is in the file, this leaves it untouched. Closing the file gives back
-/// what wasn't used. @throws OutputError with the system's reason.
+/// Makes sure that a file can grow by `bytes` (disk, quota, size limits), for a new file only by the disk's free space. Called before open_for_append it
+/// tells at once, rather than after all has been written. Closing the file gives back what wasn't used. @throws OutputError with the system's reason.
 void reserve_space(const std::filesystem::path& path, std::size_t bytes);
 
 }  // namespace corpuscle::hdf5

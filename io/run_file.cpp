@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -205,6 +206,7 @@ RunFile RunFile::resume(std::filesystem::path path, std::int64_t step, RunFileOp
   run.options_.trajectories = file.exists("/cells");
   if (run.options_.trajectories) run.cell_count_ = file.shape("/cells/type").at(0);
   run.rows_written_ = kept;
+  run.add_missing(file);
   run.cut(file);
   file.close();
   return run;
@@ -236,6 +238,28 @@ void RunFile::append(const Sample& sample) {
     waiting_bytes_ += size_of(quantity.shape) * sizeof(double) * cell_count_;
   }
   if (waiting_bytes_ >= options_.buffer_bytes || std::chrono::steady_clock::now() - last_flush_ >= options_.flush_every) flush();
+}
+
+void RunFile::set_length(const std::string& scene, std::int64_t steps) {
+  auto file = hdf5::File::open_for_append(path_);
+  file.set_attribute("/", "scene", scene);
+  file.set_attribute("/lattice", "steps", steps);
+  file.close();
+}
+
+void RunFile::add_missing(hdf5::File& file) const {
+  const auto add = [&](const std::string& name, const char* unit, const char* description, const hdf5::Shape& row) {
+    if (file.exists(name)) return;
+    file.create_rows<double>(name, {.row_shape = row, .unit = unit, .description = description});
+    file.append<double>(name, std::vector<double>(rows_written_ * size_of(row), std::numeric_limits<double>::quiet_NaN()));
+  };
+  for (const auto& quantity : series_quantities()) add(in_series(quantity.name), quantity.unit, quantity.description, quantity.shape);
+  for (const auto& quantity : cell_quantities()) {
+    if (!options_.trajectories) break;
+    hdf5::Shape row = quantity.shape;
+    row.insert(row.begin(), cell_count_);
+    add(in_cells(quantity.name), quantity.unit, quantity.description, row);
+  }
 }
 
 void RunFile::cut(hdf5::File& file) const {

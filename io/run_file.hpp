@@ -35,7 +35,8 @@ class RunFile {
   /// Creates the file (replacing an older one) with all metadata and empty series.
   /// @throws OutputError when the file can't be written.
   RunFile(std::filesystem::path path, const RunMetadata& metadata, const LatticeParameters& lattice, RunFileOptions options = {});
-  /// Continues the file of an interrupted run after `step`: later samples are cut off. Whether /cells is written is taken from the file.
+  /// Continues the file of an interrupted run after `step`: later samples are cut off. Whether /cells is written is taken from the file; a dataset that an
+  /// older version did not write is added, with NaN until now.
   /// @throws OutputError when the file is missing or isn't a run.h5.
   static RunFile resume(std::filesystem::path path, std::int64_t step, RunFileOptions options = {});
 
@@ -47,12 +48,17 @@ class RunFile {
   /// Takes one sample; cheap, but flushes at the cadence of the options. With trajectories `sample.cells` must hold every cell.
   /// @throws OutputError from the flush; the samples stay in memory and the next flush tries again.
   void append(const Sample& sample);
+  /// Samples in the file and waiting.
+  std::size_t samples() const { return rows_written_ + steps_.size(); }
+  /// Replaces what the file says about the length of the run.
+  void set_length(const std::string& scene, std::int64_t steps);
   /// Writes all waiting samples to disk. @throws OutputError (disk full ...).
   void flush();
 
  private:
   RunFile(std::filesystem::path path, RunFileOptions options);
   void cut(hdf5::File& file) const;  ///< every dataset to rows_written_ rows
+  void add_missing(hdf5::File& file) const;
 
   std::filesystem::path path_;
   RunFileOptions options_;

@@ -109,6 +109,9 @@ const Key table[] = {
      "Cadence of the snapshots; 0: none"},
     {"output.trajectories", CORPUSCLE_FIELD(P.output.trajectories), any, "", "", "", "Data of each cell at the cadence of the series"},
     {"output.fluid", CORPUSCLE_FIELD(P.output.fluid), any, "", "", "", "Velocity field at the cadence of the snapshots"},
+    {"output.checkpoint_every", CORPUSCLE_FIELD(P.output.checkpoint_every), between(0, 1e6), "", "minutes of computing", "",
+     "Time between checkpoints, from which `corpuscle resume` goes on; 0: only at the start, at the end and when the run is stopped"},
+    {"output.checkpoint_steps", CORPUSCLE_FIELD(P.output.checkpoint_steps), between(1, many_steps), "", "time steps", "none", "A checkpoint each time that so many steps are done, too"},
 
     {"si.radius", CORPUSCLE_FIELD(P.si.radius), between(1e-9, 1e-2), "", "", "none", "Large radius r of a cell (with relative_radius = 1)"},
     {"si.viscosity", CORPUSCLE_FIELD(P.si.viscosity), between(1e-6, 1e3), "", "", "none", "Viscosity η₀ of the fluid"},

@@ -58,6 +58,34 @@ void SeriesSummary::add(const Sample& sample) {
   scene_.area_drift_max = std::fmax(scene_.area_drift_max, sample.area_drift_max);
 }
 
+std::vector<double> SeriesSummary::save() const {
+  std::vector<double> saved{scene_.volume_drift_max, scene_.area_drift_max};
+  for (const Row& row : rows_) {
+    saved.push_back(static_cast<double>(row.step));
+    for (const auto column : columns) saved.push_back(row.*column);
+  }
+  return saved;
+}
+
+void SeriesSummary::restore(const std::vector<double>& saved) {
+  const std::size_t width = 1 + columns.size();
+  if (saved.size() < 2 || (saved.size() - 2) % width != 0) throw OutputError("The checkpoint's summary doesn't have the form that this version reads");
+  scene_.volume_drift_max = saved[0];
+  scene_.area_drift_max = saved[1];
+  rows_.clear();
+  for (std::size_t at = 2; at < saved.size(); at += width) {
+    Row row{};
+    row.step = static_cast<std::int64_t>(saved[at]);
+    for (std::size_t i = 0; i < columns.size(); ++i) row.*columns[i] = saved[at + 1 + i];
+    rows_.push_back(row);
+  }
+  if (!rows_.empty()) {
+    scene_.steps = rows_.back().step;
+    scene_.strain = rows_.back().strain;
+  }
+  recent_rows_ = 0;
+}
+
 std::size_t SeriesSummary::first_averaged() const {
   if (rows_.empty()) return 0;
   const auto begin = static_cast<double>(rows_.front().step);

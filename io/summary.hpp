@@ -1,5 +1,6 @@
 // summary.json: the numbers of a run that one wants first, each mean with an honest error.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -73,6 +74,10 @@ class SeriesSummary {
   SeriesSummary(const LatticeParameters& lattice, double discard);
   /// Takes the next sample. With one cell, `sample.cells` gives its shape.
   void add(const Sample& sample);
+  /// What has been added, as plain numbers for a checkpoint.
+  std::vector<double> save() const;
+  /// Goes on from `save`. @throws OutputError when the numbers can't come from there.
+  void restore(const std::vector<double>& saved);
   /// Means over the last part of what was added; the caller's fields are left empty.
   Summary result() const;
   /// Just relative_viscosity of result(), for the progress line: cheap to call with every sample, and up to 2 % of the samples old.
@@ -85,6 +90,18 @@ class SeriesSummary {
     double strain, relative_viscosity, wall_relative_viscosity, bulk_relative_viscosity, normal_stress_difference_1, normal_stress_difference_2,
         particle_pressure, mean_deformation, deformation, cos_twice_inclination, sin_twice_inclination, area_ratio;
   };
+  static constexpr std::array columns{&Row::strain,
+                                      &Row::relative_viscosity,
+                                      &Row::wall_relative_viscosity,
+                                      &Row::bulk_relative_viscosity,
+                                      &Row::normal_stress_difference_1,
+                                      &Row::normal_stress_difference_2,
+                                      &Row::particle_pressure,
+                                      &Row::mean_deformation,
+                                      &Row::deformation,
+                                      &Row::cos_twice_inclination,
+                                      &Row::sin_twice_inclination,
+                                      &Row::area_ratio};
   std::size_t first_averaged() const;
   statistics::MeanError mean_of(double Row::* quantity) const;
 

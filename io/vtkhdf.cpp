@@ -180,6 +180,9 @@ VtkHdfPolyData VtkHdfPolyData::resume(std::filesystem::path path, std::vector<Vt
   return result;
 }
 
+std::size_t VtkHdfPolyData::snapshots() const { return step_count(hdf5::File::open_for_reading(path_)); }
+std::size_t VtkHdfImage::snapshots() const { return step_count(hdf5::File::open_for_reading(path_)); }
+
 VtkHdfImage::VtkHdfImage(std::filesystem::path path, std::array<int, 3> nodes, const VtkDomain& domain)
     : path_(std::move(path)), nodes_(nodes), domain_(domain) {
   const std::array<std::int64_t, 6> extent{0, nodes[0] - 1, 0, nodes[1] - 1, 0, nodes[2] - 1};

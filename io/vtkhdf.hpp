@@ -37,6 +37,8 @@ class VtkHdfPolyData {
   /// Continues an interrupted run's file: snapshots with a time beyond that of `step`/`strain` are cut off.
   static VtkHdfPolyData resume(std::filesystem::path path, std::vector<VtkCellType> types, const VtkDomain& domain, std::int64_t step, double strain);
 
+  /// Snapshots in the file.
+  std::size_t snapshots() const;
   /// Writes one snapshot. `snapshot.positions` and `.velocities` hold every vertex.
   void append(const Snapshot& snapshot);
 
@@ -60,6 +62,7 @@ class VtkHdfImage {
   VtkHdfImage(std::filesystem::path path, std::array<int, 3> nodes, const VtkDomain& domain);
   static VtkHdfImage resume(std::filesystem::path path, std::array<int, 3> nodes, const VtkDomain& domain, std::int64_t step, double strain);
 
+  std::size_t snapshots() const;
   /// Writes `snapshot.fluid_velocity` [nz][ny][nx][3].
   void append(const Snapshot& snapshot);
 

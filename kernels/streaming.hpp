@@ -56,6 +56,12 @@ struct StreamingAccessor {
       f(StreamingSlots<Parity>::neighbour_slot(p), node + offsets.along[p]) = static_cast<Storage>(g[2 * p + 2]);
     });
   }
+  /// The memory of one population before collision.
+  KOKKOS_FORCEINLINE_FUNCTION Storage& slot(const int node, const int direction) const {
+    if (direction == 0) return f(0, node);
+    const int pair = (direction - 1) / 2;
+    return direction % 2 == 1 ? f(StreamingSlots<Parity>::local_slot(pair), node) : f(StreamingSlots<Parity>::neighbour_slot(pair), node + offsets.along[pair]);
+  }
 };
 
 }  // namespace corpuscle

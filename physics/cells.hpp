@@ -43,6 +43,11 @@ class Cells {
 
   std::vector<double> positions_host() const { return to_host(positions_); }
   std::vector<double> velocities_host() const { return to_host(velocities_); }
+  /// Takes positions and velocities of all vertices from the host.
+  void restore(const std::vector<double>& positions, const std::vector<double>& velocities) const {
+    Kokkos::deep_copy(positions_, to_device(positions));
+    Kokkos::deep_copy(velocities_, to_device(velocities));
+  }
   std::size_t bytes() const { return 3 * positions_.span() * sizeof(double) + cell_of_vertex_.span() * sizeof(int); }
 
  private:

@@ -110,6 +110,22 @@ struct StateOfNode {
   }
 };
 
+/// One population from the lattice to a plain array [nz][ny][nx], or back.
+template <class Storage, class Accessor, bool ToLattice>
+struct CopyPopulation {
+  Accessor populations;
+  Array1<Storage> plain;
+  int direction, nx, ny;
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, const int x, const int y, const int z) const {
+    Storage& on_lattice = populations.slot(node, direction);
+    Storage& on_plain = plain((z * ny + y) * nx + x);
+    if constexpr (ToLattice)
+      on_lattice = on_plain;
+    else
+      on_plain = on_lattice;
+  }
+};
+
 template <class Real>
 struct HaloForceX {
   VectorField<Real> force;
@@ -273,6 +289,39 @@ std::array<double, 2> Fluid<Storage, Compute>::wall_shear_stress() const {
     return {on_lower / area, -on_upper / area};
   };
   return step_ % 2 == 1 ? stress(std::integral_constant<int, 0>{}) : stress(std::integral_constant<int, 1>{});
+}
+
+template <class Storage, class Compute>
+std::vector<Storage> Fluid<Storage, Compute>::population(int direction) const {
+  Array1<Storage> plain(Kokkos::view_alloc(Kokkos::WithoutInitializing, "population"), grid_.nodes());
+  with_accessor([&](auto accessor, auto) {
+    lattice_for("read_population", grid_, interior(grid_), CopyPopulation<Storage, decltype(accessor), false>{accessor, plain, direction, grid_.nx, grid_.ny});
+  });
+  return to_host(plain);
+}
+
+template <class Storage, class Compute>
+template <int Parity>
+void Fluid<Storage, Compute>::restore_parity(const std::function<std::vector<Storage>(int)>& population) {
+  using Accessor = StreamingAccessor<Storage, double, Parity>;
+  const Array1<Storage> plain(Kokkos::view_alloc(Kokkos::WithoutInitializing, "population"), grid_.nodes());
+  for (int q = 0; q < 19; ++q) {
+    const std::vector<Storage> values = population(q);
+    Kokkos::deep_copy(plain, Kokkos::View<const Storage*, Kokkos::LayoutRight, Kokkos::HostSpace>(values.data(), values.size()));
+    lattice_for("write_population", grid_, interior(grid_),
+                CopyPopulation<Storage, Accessor, true>{Accessor{populations_, PairOffsets(grid_)}, plain, q, grid_.nx, grid_.ny});
+    Kokkos::fence();  // `values` is gone after this
+  }
+  exchange_populations<Parity>(false);
+}
+
+template <class Storage, class Compute>
+void Fluid<Storage, Compute>::restore(std::int64_t step, const std::function<std::vector<Storage>(int)>& population) {
+  step_ = step;
+  if (step % 2 == 0)
+    restore_parity<0>(population);
+  else
+    restore_parity<1>(population);
 }
 
 template <class Storage, class Compute>

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -57,6 +58,11 @@ class Fluid {
   /// Viscous shear stress sigma_xz on the lower and upper wall in the last step, by momentum exchange.
   std::array<double, 2> wall_shear_stress() const;
 
+  /// Population of a direction 0 ... 18 before the collision of the coming step, [nz][ny][nx]: with `step()` the whole state of the fluid.
+  std::vector<Storage> population(int direction) const;
+  /// Goes on from a state: `population(direction)` is asked for each direction in turn.
+  void restore(std::int64_t step, const std::function<std::vector<Storage>(int)>& population);
+
   double mass_shift() const;                  ///< sum over nodes of rho - 1
   std::array<double, 3> momentum() const;     ///< sum over nodes of sum_i c_i f_i (+ F/2 with the uniform force)
   /// Velocities at the present time on the host, [nz][ny][nx][3].
@@ -84,6 +90,8 @@ class Fluid {
   void exchange_populations(bool to_halo);
   template <int Parity>
   void bounce_back();
+  template <int Parity>
+  void restore_parity(const std::function<std::vector<Storage>(int)>& population);
   void set_populations(const std::vector<double>& velocity, double shear_rate);
   template <class Body>
   void with_accessor(const Body& body) const;

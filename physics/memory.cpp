@@ -61,7 +61,12 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
   const auto nodes = std::size_t(lattice.box_volume());
   // The velocities of the fluid, [nodes][3] floats: from the kernel, and as a host array.
   if (with_fluid) m.output += nodes * 3 * sizeof(float) * (runs_on_host ? 2 : 1);
-  if (problem.cells.empty()) return m;
+  // A checkpoint takes the populations one at a time, from the kernel and as a host array.
+  std::size_t checkpoint = nodes * (problem.accuracy.precision == Precision::single_precision ? 4 : 8) * (runs_on_host ? 2 : 1);
+  if (problem.cells.empty()) {
+    m.output = std::max(m.output, checkpoint);
+    return m;
+  }
 
   const std::size_t real = problem.accuracy.membrane_precision == Precision::single_precision ? 4 : 8;
   std::size_t vertices = 0, cells = 0, packing_tables = 0;
@@ -86,6 +91,9 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
   }
   // A snapshot: positions and velocities, and as floats positions, velocities and deformation for the file.
   if (lattice.snapshot_every > 0) m.output += host_copy * vertices * (2 * vector + 7 * sizeof(float));
+  // A checkpoint: positions, velocities, and those of the two steps before.
+  checkpoint += host_copy * vertices * (problem.accuracy.vertex_update == VertexUpdate::euler ? 2 : 4) * vector;
+  m.output = std::max(m.output, checkpoint);
   return m;
 }
 

@@ -131,6 +131,8 @@ struct OutputSpec {
   double snapshot_every = 1.0;               ///< 0: none
   bool trajectories = true;                  ///< per-cell data at the cadence of the series
   bool fluid = false;                        ///< velocity field as ImageData at the cadence of the snapshots
+  double checkpoint_every = 10;              ///< minutes of wall time between checkpoints; 0: none by time
+  std::optional<std::int64_t> checkpoint_steps;  ///< and after this many time steps
 };
 
 /// A complete scene.

@@ -89,6 +89,26 @@ class SuspensionOf final : public Suspension {
     return s;
   }
 
+  SuspensionState state() const override {
+    SuspensionState s;
+    s.step = fluid_.step();
+    if (cells_) {
+      s.positions = cells_->positions_host();
+      s.velocities = cells_->velocities_host();
+      s.motion = motion_->state();
+    }
+    return s;
+  }
+  Population population(int direction) const override { return fluid_.population(direction); }
+  void restore(const SuspensionState& state, const PopulationSource& population) override {
+    fluid_.restore(state.step, [&](int direction) {
+      return std::visit([](auto&& values) { return std::vector<Real>(values.begin(), values.end()); }, population(direction));
+    });
+    if (!cells_) return;
+    cells_->restore(state.positions, state.velocities);
+    motion_->restore(state.motion);
+  }
+
   void check() override { guards_->check(fluid_, cells_.get(), contact_.get()); }
   std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
   std::size_t bytes() const override {

@@ -6,6 +6,7 @@
 #include "physics/fluid.hpp"
 #include "physics/problem.hpp"
 #include "physics/sample.hpp"
+#include "physics/suspension_state.hpp"
 #include "physics/units.hpp"
 
 namespace corpuscle {
@@ -24,6 +25,14 @@ class Suspension {
   virtual Sample step_and_measure() = 0;
   /// Positions and velocities of all vertices now.
   virtual Snapshot snapshot(bool with_fluid) const = 0;
+
+  /// What the next steps depend on, but for the populations.
+  virtual SuspensionState state() const = 0;
+  /// Population of a direction 0 ... 18 in the precision of the fluid.
+  virtual Population population(int direction) const = 0;
+  /// Goes on from a state of the same scene, bit for bit as the run would have gone on that it was taken of. Populations of the other precision are converted.
+  virtual void restore(const SuspensionState& state, const PopulationSource& population) = 0;
+
   /// The guards (physics/guards.hpp). @throws SimulationError when the state is no longer physical: names step, cell, place, likely cause and what to change.
   virtual void check() = 0;
 

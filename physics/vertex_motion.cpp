@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/random.hpp"
+#include "core/vertex_vectors.hpp"
 #include "physics/mesh_device.hpp"
 
 namespace corpuscle {
@@ -156,6 +157,16 @@ std::size_t VertexMotion::bytes() const {
 std::size_t VertexMotion::bytes_per_vertex(VertexUpdate update) {
   const int vectors_kept = update == VertexUpdate::euler ? 0 : update == VertexUpdate::averaged ? 2 : 6;
   return std::size_t(vectors_kept) * 3 * sizeof(double);
+}
+
+VertexMotionState VertexMotion::state() const { return {steps_, stages(), to_host(before_), to_host(before_that_)}; }
+
+void VertexMotion::restore(const VertexMotionState& state) {
+  steps_ = state.steps;
+  scheme_ = ChebyshevScheme(int(state.stages));
+  if (update_ == VertexUpdate::euler) return;
+  Kokkos::deep_copy(before_, to_device(state.before));
+  Kokkos::deep_copy(before_that_, to_device(state.before_that));
 }
 
 void VertexMotion::advance(const VertexVectors& positions, const VertexVectors& velocities, const VertexVectors& forces, const ForceOperator& compute_forces) {

@@ -7,6 +7,7 @@
 #include "physics/cells.hpp"
 #include "physics/chebyshev.hpp"
 #include "physics/problem.hpp"
+#include "physics/suspension_state.hpp"
 
 namespace corpuscle {
 
@@ -38,6 +39,10 @@ class VertexMotion {
 
   /// Chebyshev stages of the last step; 1 for the other updates.
   int stages() const { return 1 + int(scheme_.stages.size()); }
+  VertexMotionState state() const;
+  /// Goes on from a state of the same update and the same vertices.
+  void restore(const VertexMotionState& state);
+
   std::size_t bytes() const;
   /// What `bytes` will be, but for the tables of the types.
   static std::size_t bytes_per_vertex(VertexUpdate update);

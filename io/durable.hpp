@@ -1,0 +1,30 @@
+// What survives a crash of the machine, and how one sees that a file is whole.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace corpuscle {
+
+/// A running 64-bit hash of bytes, for files: finds every flipped bit, any cut, any swap. No protection against intent.
+class Hash {
+ public:
+  /// Parts may be given in any division; only their sequence counts.
+  void add(std::span<const unsigned char> bytes);
+  std::uint64_t value() const;
+
+ private:
+  void mix(std::uint64_t word);
+  std::uint64_t state_ = 0x9e3779b97f4a7c15ULL, length_ = 0, pending_ = 0;
+  int pending_bytes_ = 0;
+};
+
+/// Writes all bytes at a place of a file. @returns 0 or errno.
+int write_at(int file, std::uint64_t address, std::span<const unsigned char> bytes);
+/// Waits until a file's data are on disk. @returns 0 or errno; what a file system cannot do is no error.
+int sync_file(int file);
+/// The same for the names in a directory (new, renamed, removed files).
+void sync_directory(const std::filesystem::path& directory);
+
+}  // namespace corpuscle

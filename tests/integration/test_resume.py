@@ -1,0 +1,123 @@
+"""Checkpoints from the outside: a run that is extended, killed, or stopped by a signal or the wall time goes on bit for bit.
+Arguments: PROGRAM SOURCE-FOLDER."""
+import json
+import pathlib
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+
+import h5py
+
+from kills import SCENE, command, differences, kill_and_resume, start
+
+STEPS = 2001
+
+
+def check_equal(a, b, what):
+    different, compared = differences(a, b)
+    assert not different, f"{what}: {different}"
+    assert compared > 50, compared
+    x, y = (json.loads((folder / "summary.json").read_text()) for folder in (a, b))
+    for key in x.keys() - {"wall_seconds", "mlups", "threads", "bytes_peak"}:
+        assert x[key] == y[key], f"{what}: summary.json: {key}"
+    print(f"{what}: {compared} datasets are equal bit for bit")
+
+
+def check_extension(program, folder):
+    """n steps, then n more, against 2 n steps: n odd, so that the populations lie the other way round in memory; other numbers of threads."""
+    n = 151
+    for update in ("averaged", "chebyshev"):
+        scene = folder / f"{update}.toml"
+        scene.write_text(SCENE.format(steps=2 * n, checkpoint_steps=10000).replace("radius = 4", f'radius = 4\nvertex_update = "{update}"'))
+        once, twice = folder / f"{update}-once", folder / f"{update}-twice"
+        command(program, "run", scene, "--output", once, "--threads", 1)
+        command(program, "run", scene, "--output", twice, "--threads", 2, "--set", f"run.steps={n}")
+        with h5py.File(twice / "run.h5") as file:
+            assert file["series/step"][-1] == n and file["series/step"][-1] % file["lattice"].attrs["series_every"] != 0, "the last sample is off the cadence"
+        log = command(program, "resume", twice, "--threads", 1, "--until", f"steps={2 * n}").stdout
+        assert f"going on at step {n} of {2 * n}" in log, log
+        check_equal(once, twice, f"{update}, {n} + {n} steps")
+        command(program, "resume", twice)
+        check_equal(once, twice, f"{update}, and resumed although it is finished")
+    short = command(program, "resume", folder / "averaged-twice", "--until", "steps=9", check=2)
+    assert "larger value" in short.stderr, short.stderr
+    return folder / "averaged-once"
+
+
+def check_damage(program, folder, reference):
+    """A newest checkpoint that is damaged: the one before is taken, with a note. Both damaged: refused, nothing is changed."""
+    output = folder / "damaged"
+    command(program, "run", folder / "averaged.toml", "--output", output, "--set", "run.steps=140", "--set", "output.checkpoint_steps=61")
+    newest = max((output / name for name in ("checkpoint-a.h5", "checkpoint-b.h5")), key=lambda path: h5py.File(path).attrs["sequence"])
+    data = bytearray(newest.read_bytes())
+    data[len(data) // 3] ^= 16
+    newest.write_bytes(data)
+    broken = folder / "broken"
+    shutil.copytree(output, broken)
+    result = command(program, "resume", output, "--until", "steps=302", "--threads", 2)
+    assert newest.name in result.stderr and "damaged" in result.stderr and "going on at step 122" in result.stdout, result
+    different, _ = differences(reference, output)
+    assert different in ([], ["run.h5:scene"]), different  # checkpoint_steps is in the scene
+    for name in ("checkpoint-a.h5", "checkpoint-b.h5"):
+        (broken / name).write_bytes((broken / name).read_bytes()[:1000])
+    before = (broken / "run.h5").read_bytes()
+    result = command(program, "resume", broken, check=2)
+    assert result.stderr.count("\n") == 1 and "no whole checkpoint" in result.stderr, result.stderr
+    assert before == (broken / "run.h5").read_bytes()
+    result = command(program, "resume", folder, check=2)
+    assert "holds no checkpoint" in result.stderr, result.stderr
+    print("a damaged checkpoint is left out")
+
+
+def check_stops(program, folder, reference):
+    """Each way to stop a run: its exit code, soon, and the same result after resume."""
+    for name, send, code in (("interrupt", signal.SIGINT, 130), ("terminate", signal.SIGTERM, 130), ("user signal", signal.SIGUSR1, 75)):
+        output = folder / name.replace(" ", "-")
+        process = start(program, folder / "kills.toml", output)
+        time.sleep(0.2)
+        process.send_signal(send)
+        returncode = process.wait(timeout=60)
+        process.stderr.close()
+        assert returncode == code, (name, returncode)
+        summary = json.loads((output / "summary.json").read_text())
+        assert summary["stopped_by"] in (name, "interrupt") and summary["steps"] < STEPS, summary
+        command(program, "resume", output, "--threads", 2)
+        check_equal(reference, output, f"{name} at step {summary['steps']}, exit code {code}")
+
+
+def check_wall_time(program, folder, reference):
+    """A run that would take days stops after two seconds, and once more; then its end is set to where it has come to, and it equals one of that length."""
+    output, packing = folder / "wall-time", f'run.packing="{reference / "packing.h5"}"'  # of packing nothing is kept, so it must not be where the time goes
+    command(program, "run", folder / "kills.toml", "--output", output, "--set", packing, "--set", "run.steps=100000000", "--wall-time", "00:00:02",
+            "--threads", 1, check=75)
+    command(program, "resume", output, "--wall-time", "0-00:00:01", "--threads", 1, check=75)
+    summary = json.loads((output / "summary.json").read_text())
+    assert summary["stopped_by"] == "wall time", summary
+    command(program, "resume", output, "--until", f"steps={summary['steps']}")
+    once = folder / "until-wall-time"
+    command(program, "run", folder / "kills.toml", "--output", once, "--set", packing, "--set", f"run.steps={summary['steps']}", "--threads", 1)
+    check_equal(once, output, f"wall time, twice, until step {summary['steps']}")
+    wrong = command(program, "resume", output, "--wall-time", "90", check=2)
+    assert "HH:MM:SS" in wrong.stderr
+
+
+def main():
+    program = sys.argv[1]
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        check_damage(program, folder, check_extension(program, folder))
+        (folder / "kills.toml").write_text(SCENE.format(steps=STEPS, checkpoint_steps=41))
+        reference = folder / "reference"
+        command(program, "run", folder / "kills.toml", "--output", reference, "--threads", 1)
+        check_stops(program, folder, reference)
+        check_wall_time(program, folder, reference)
+        seed = int(time.time())
+        killed, _ = kill_and_resume(program, folder / "kills.toml", folder / "killed", 8, random.Random(seed), 0.5)
+        check_equal(reference, folder / "killed", f"{killed} kills, seed {seed}")
+
+
+if __name__ == "__main__":
+    main()
