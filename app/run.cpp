@@ -13,8 +13,11 @@
 #include "app/commands.hpp"
 #include "app/machine.hpp"
 #include "app/profile.hpp"
+#include "app/replaced_results.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/lock.hpp"
+#include "io/output_check.hpp"
 #include "io/packing_file.hpp"
 #include "io/progress.hpp"
 #include "io/run_file.hpp"
@@ -33,7 +36,7 @@ std::atomic<bool> interrupted{false};
 extern "C" void on_signal(int) { interrupted = true; }
 
 /// Refuses directories that hold results or cannot be written; creates nothing.
-void check_output(const fs::path& directory, bool overwrite) {
+void check_output(const fs::path& directory, bool overwrite, bool locked_by_this_run = false) {
   std::error_code error;
   fs::path existing = fs::absolute(directory);
   while (!existing.empty() && !fs::exists(existing, error)) existing = existing.parent_path();
@@ -41,6 +44,7 @@ void check_output(const fs::path& directory, bool overwrite) {
     throw InputError(fmt::format("--output {}: {} is not a directory; choose another place.", directory.string(), existing.string()));
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
+  if (!locked_by_this_run) require_unlocked(directory);
   for (const char* name : {"run.h5", "summary.json", "cells.vtkhdf", "fluid.vtkhdf"})
     if (!overwrite && fs::exists(directory / name, error))
       throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); choose another directory, or add --overwrite to replace them.", directory.string(), name));
@@ -215,6 +219,7 @@ int run(const RunOptions& options) {
 
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end of the process
   const KokkosSession session(options.threads);
   const bool terminal = stream_is_terminal(stdout);
   try {
@@ -231,18 +236,27 @@ int run(const RunOptions& options) {
   const bool existed = fs::exists(directory, error);
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
-  remove_outputs(directory, problem.run.packing);
+  std::optional<DirectoryLock> lock;
+  std::optional<ReplacedResults> replaced;
   std::optional<Outputs> created;
   try {
+    lock.emplace(directory);
+    check_output(directory, options.overwrite, lock.has_value());  // another run may have come and gone while this one was packing
+    replaced.emplace(directory, problem.run.packing);
     std::ofstream scene(directory / "scene.toml");
     if (!(scene << to_toml(problem) << std::flush)) throw OutputError((directory / "scene.toml").string() + " can't be written (is the disk full?)");
     if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
     created.emplace(directory, problem, lattice, types);
   } catch (const OutputError& failed) {  // nothing has been computed: leave nothing behind
-    remove_outputs(directory, problem.run.packing);
+    if (replaced) {
+      remove_outputs(directory, problem.run.packing);
+      replaced->restore();
+    }
+    lock.reset();
     if (!existed) fs::remove(directory, error);
     throw InputError(fmt::format("--output {}: {}; make room or choose another place.", directory.string(), failed.what()));
   }
+  replaced->discard();
   Outputs& outputs = *created;
   packing.positions = {};
   if (packs_cells(problem, types)) suspension->settle();
@@ -272,7 +286,7 @@ int run(const RunOptions& options) {
   }
   if (profile) std::cout << profile_table(summary.profile);
   std::cout << result_line(summary, directory) << std::endl;
-  if (!failure.empty()) std::cerr << "error: " << failure << " What was written until then is kept in " << directory.string() << "." << std::endl;
+  if (!failure.empty()) std::cerr << "error: " << failure << " " << what_is_kept(directory) << std::endl;
   return code;
 }
 

@@ -84,10 +84,14 @@ class File {
   Shape shape(const std::string& name) const;
   template <class T>
   Array<T> read(const std::string& name) const;
+  /// Rows [first, first + count) along the first dimension: large datasets in pieces.
+  template <class T>
+  Array<T> read_rows(const std::string& name, std::size_t first, std::size_t count) const;
 
  private:
   File(std::int64_t id, std::filesystem::path path) : id_(id), path_(std::move(path)) {}
   void set_numbers(const std::string& object, const std::string& name, std::int64_t type, const void* values, std::size_t count, bool scalar);
+  void require_stored(const std::string& name, const Shape& shape, std::size_t element_bytes) const;
   [[noreturn]] void fail(const std::string& doing) const;
   std::int64_t check(std::int64_t result, const std::string& doing) const;
 

@@ -265,6 +265,14 @@ void RunFile::flush() {
   waiting_bytes_ = 0;
 }
 
+std::vector<std::string> run_file_rows(bool trajectories) {
+  std::vector<std::string> names{"/series/step"};
+  for (const auto& quantity : series_quantities()) names.push_back(in_series(quantity.name));
+  if (trajectories)
+    for (const auto& quantity : cell_quantities()) names.push_back(in_cells(quantity.name));
+  return names;
+}
+
 std::vector<Sample> read_series(const std::filesystem::path& path) {
   const auto file = hdf5::File::open_for_reading(path);
   const auto steps = file.read<std::int64_t>("/series/step").values;

@@ -66,6 +66,9 @@ class RunFile {
   std::chrono::steady_clock::time_point last_flush_;
 };
 
+/// Absolute names of the datasets with a row for every sample: "/series/step", ..., with `trajectories` also "/cells/centre", ...
+std::vector<std::string> run_file_rows(bool trajectories);
+
 /// Reads /series (not /cells) of a run.h5 back, in order. @throws OutputError when the file can't be read.
 std::vector<Sample> read_series(const std::filesystem::path& path);
 
