@@ -184,7 +184,7 @@ RunEnd simulate(const LatticeParameters& lattice, Suspension& suspension, Output
     end.code = exit_code::broken_run;
   } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
     end.stopped_by = "output error";
-    end.failure = failed.what();
+    end.failure = failed.what() + std::string(".");
     end.code = exit_code::failure;
   }
   Kokkos::fence();
@@ -276,14 +276,17 @@ int run(const RunOptions& options) {
   summary.warnings = lattice.warnings;
   std::string failure = end.failure;
   int code = end.code;
-  try {
-    outputs.flush();
-    if (profile) summary.profile = profile->times();
-    write_summary(directory / "summary.json", summary);
-  } catch (const OutputError& failed) {
-    if (failure.empty()) failure = failed.what();
-    if (code == exit_code::success) code = exit_code::failure;
-  }
+  const auto attempt = [&](const auto& write) {  // each on its own: a small summary may fit where the series doesn't
+    try {
+      write();
+    } catch (const OutputError& failed) {
+      if (failure.empty()) failure = failed.what() + std::string(".");
+      if (code == exit_code::success) code = exit_code::failure;
+    }
+  };
+  attempt([&] { outputs.flush(); });
+  if (profile) summary.profile = profile->times();
+  attempt([&] { write_summary(directory / "summary.json", summary); });
   if (profile) std::cout << profile_table(summary.profile);
   std::cout << result_line(summary, directory) << std::endl;
   if (!failure.empty()) std::cerr << "error: " << failure << " " << what_is_kept(directory) << std::endl;

@@ -15,7 +15,7 @@ import numpy
 
 SCENE = """
 [box]
-size = [10, 10, 10]
+size = [{box}, {box}, {box}]
 [flow]
 capillary_number = 0.1
 [[cells]]
@@ -58,12 +58,13 @@ def main():
     options.add_argument("--minutes", type=float, default=120)
     options.add_argument("--threads", type=int)
     options.add_argument("--radius", type=float, default=8, help="of a cell, in lattice units")
+    options.add_argument("--box", type=float, default=10, help="edge of the box, in cell radii")
     options.add_argument("--every", type=float, default=60, help="seconds between two lines")
     options = options.parse_args()
 
     options.output.mkdir(parents=True)
     scene = options.output / "soak.toml"
-    scene.write_text(SCENE.format(radius=options.radius))
+    scene.write_text(SCENE.format(radius=options.radius, box=options.box))
     results = options.output / "results"
     command = [options.program, "run", str(scene), "--output", str(results)]
     if options.threads:
