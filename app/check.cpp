@@ -113,7 +113,8 @@ int check(const CheckOptions& options) {
     crashes.push_back({{"file", file}, {"problem", report["how"]}, {"advice", "the file is damaged; the others can be used"}});
   }
   if (!report["is_output"].get<bool>())
-    throw InputError(fmt::format("check {}: holds no file of a run (run.h5, summary.json, ...); give the directory that `corpuscle run --output` wrote.", options.directory));
+    throw InputError(fmt::format("check {}: holds no file of a run (run.h5, summary.json, ...); give the directory that `corpuscle run --output` wrote.",
+        options.directory));
   for (const auto& p : report["problems"]) crashes.push_back(p);
   report["problems"] = crashes;
   if (options.json) fmt::print("{}\n", report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));

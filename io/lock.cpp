@@ -43,7 +43,8 @@ bool is_at(int file, const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& directory, const std::string& holder) {
-  throw InputError(fmt::format("--output {}: another run is writing there ({}); choose another directory, or wait until that run has ended.", directory.string(), holder));
+  throw InputError(fmt::format("--output {}: another run is writing there ({}); choose another directory, or wait until that run has ended.",
+      directory.string(), holder));
 }
 
 }  // namespace

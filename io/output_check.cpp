@@ -25,6 +25,7 @@ constexpr std::size_t piece_values = std::size_t{1} << 20;  // that are read at 
 struct RunFacts {
   std::optional<std::string> scene;
   std::optional<bool> walls;
+  FlowKind flow = FlowKind::shear;
   std::vector<std::int64_t> steps;
   std::vector<double> strain, relative_viscosity, volume_drift_max;
   std::vector<std::string> type_names;
@@ -99,7 +100,9 @@ class Checker {
     }
     run_.scene = file.string_attribute("/", "scene");
     try {
-      run_.walls = parse_scene(*run_.scene, "the scene in run.h5").box.walls;
+      const Problem problem = parse_scene(*run_.scene, "the scene in run.h5");
+      run_.walls = problem.box.walls;
+      run_.flow = problem.flow.kind;
     } catch (const InputError& error) {
       const std::string what = error.what();  // a mesh or packing elsewhere may have been moved since: no fault of this file
       if (what.find("there is no such file") != std::string::npos) note(what);
@@ -143,7 +146,8 @@ class Checker {
       return;
     }
     if (shortest != longest)
-      problem(name, fmt::format("has series of {} to {} rows", shortest, longest), fmt::format("the run was stopped while writing; the first {} samples are complete", shortest));
+      problem(name, fmt::format("has series of {} to {} rows", shortest, longest),
+          fmt::format("the run was stopped while writing; the first {} samples are complete", shortest));
     run_.steps = file.read_rows<std::int64_t>("/series/step", 0, shortest).values;
     times(shortest);
     for (const auto& dataset : run_file_rows(trajectories))
@@ -155,7 +159,8 @@ class Checker {
     for (std::size_t i = 0; i < run_.strain.size(); ++i) {
       const double expected = run_.shear_rate * static_cast<double>(run_.steps[i]);
       if (std::abs(run_.strain[i] - expected) <= 1e-9 * std::max(1.0, std::abs(expected))) continue;
-      problem(name, fmt::format("/series/strain at step {} is {:.9g} instead of shear rate x step = {:.9g}", run_.steps[i], run_.strain[i], expected), "the file was changed or damaged");
+      problem(name, fmt::format("/series/strain at step {} is {:.9g} instead of shear rate x step = {:.9g}", run_.steps[i], run_.strain[i], expected),
+          "the file was changed or damaged");
       break;
     }
     if (trajectories) cells(file, shortest);
@@ -185,7 +190,8 @@ class Checker {
     const bool rest = run_.shear_rate == 0, walls = run_.walls.value_or(false);
     const std::string leaf = dataset.substr(dataset.rfind('/') + 1);
     if (leaf == "wall_shear_stress") return !walls;
-    if (leaf == "wall_relative_viscosity") return !walls || rest;
+    if (leaf == "wall_relative_viscosity") return !walls || run_.flow != FlowKind::shear;
+    if (leaf == "bulk_relative_viscosity") return run_.flow != FlowKind::shear;
     if (leaf == "mean_deformation" || leaf == "volume_drift_max" || leaf == "area_drift_max") return run_.type_names.empty();
     const bool relative = leaf.ends_with("relative_viscosity") || leaf.starts_with("normal_stress") || leaf == "particle_pressure";
     return relative && rest;
@@ -212,11 +218,13 @@ class Checker {
   void cells(const hdf5::File& file, std::size_t rows) {
     const std::string name = "run.h5";
     const auto types = file.read<std::int32_t>("/cells/type").values;
-    if (file.read_strings("/cells/type_names") != run_.type_names) problem(name, "/cells/type_names differs from the names in /lattice/cell_types", "the file was changed or damaged");
+    if (file.read_strings("/cells/type_names") != run_.type_names) problem(name, "/cells/type_names differs from the names in /lattice/cell_types",
+        "the file was changed or damaged");
     for (std::size_t i = 0; i < run_.type_counts.size(); ++i) {
       const auto found = std::count(types.begin(), types.end(), static_cast<std::int32_t>(i));
       if (found != run_.type_counts[i])
-        problem(name, fmt::format("/cells/type lists {} cells of type '{}' instead of {}", found, run_.type_names[i], run_.type_counts[i]), "the file was changed or damaged");
+        problem(name, fmt::format("/cells/type lists {} cells of type '{}' instead of {}", found, run_.type_names[i], run_.type_counts[i]),
+            "the file was changed or damaged");
     }
     for (const auto& dataset : run_file_rows(true)) {
       if (!dataset.starts_with("/cells/") || !file.exists(dataset)) continue;
@@ -228,7 +236,8 @@ class Checker {
       if (!file.exists(dataset)) continue;
       const auto last = file.read_rows<double>(dataset, rows - 1, 1).values;
       const auto gone = std::find_if(last.begin(), last.end(), [](double x) { return !(x > 0); });
-      if (gone != last.end()) problem(name, fmt::format("{} of cell {} is {} in the last sample", dataset, gone - last.begin(), *gone), "the run broke: look for the step where it becomes so");
+      if (gone != last.end()) problem(name, fmt::format("{} of cell {} is {} in the last sample", dataset, gone - last.begin(), *gone),
+          "the run broke: look for the step where it becomes so");
     }
   }
 
@@ -245,9 +254,11 @@ class Checker {
     for (std::size_t i = 0; i < times.size(); ++i) {
       const double before = i > 0 ? times[i - 1] : -1;
       const double every = static_cast<double>(run_.snapshot_every) * (run_.shear_rate == 0 ? 1 : run_.shear_rate);
-      if (!std::isfinite(times[i]) || times[i] <= before) problem(name, fmt::format("snapshot {} has the time {:.9g} after {:.9g}", i, times[i], before), fmt::format("the first {} snapshots can be used", i));
+      if (!std::isfinite(times[i]) || times[i] <= before) problem(name, fmt::format("snapshot {} has the time {:.9g} after {:.9g}", i, times[i], before),
+          fmt::format("the first {} snapshots can be used", i));
       else if (run_.readable && every > 0 && times[i] > (static_cast<double>(i) + 1e-6) * every)
-        problem(name, fmt::format("snapshot {} is of {:.9g}, but should be of {:.9g}", i, times[i], static_cast<double>(i) * every), "snapshots are missing there; the others can be used");
+        problem(name, fmt::format("snapshot {} is of {:.9g}, but should be of {:.9g}", i, times[i], static_cast<double>(i) * every),
+            "snapshots are missing there; the others can be used");
       else continue;
       break;
     }
@@ -281,7 +292,8 @@ class Checker {
 
   void points(const hdf5::File& file, const std::string& name, const std::string& dataset, std::size_t rows) {
     const std::size_t written = rows_of(file, dataset);
-    if (written < rows) problem(name, fmt::format("{} has {} rows instead of {}", dataset, written, rows), "the file was changed or damaged; earlier snapshots can be used");
+    if (written < rows) problem(name, fmt::format("{} has {} rows instead of {}", dataset, written, rows),
+        "the file was changed or damaged; earlier snapshots can be used");
     finite(file, name, dataset, std::min(rows, written));
   }
 
@@ -291,7 +303,8 @@ class Checker {
     if (!std::equal(cell_times_.begin(), cell_times_.begin() + static_cast<std::ptrdiff_t>(both), fluid_times_.begin()))
       problem("fluid.vtkhdf", "its snapshots are of other times than those of cells.vtkhdf", "the files belong to different runs");
     else if (cell_times_.size() != fluid_times_.size())
-      problem("fluid.vtkhdf", fmt::format("has {} snapshots, cells.vtkhdf has {}", fluid_times_.size(), cell_times_.size()), fmt::format("the run was stopped between both; the first {} belong together", both));
+      problem("fluid.vtkhdf", fmt::format("has {} snapshots, cells.vtkhdf has {}", fluid_times_.size(), cell_times_.size()),
+          fmt::format("the run was stopped between both; the first {} belong together", both));
   }
 
   void packing(const fs::path& path) {
@@ -319,7 +332,8 @@ class Checker {
     const fs::path path = directory_ / name;
     if (!fs::exists(path, ignored)) {
       if (out_.is_output && !running_)
-        problem(name, "is missing: the run did not end in order", out_.samples > 0 ? fmt::format("what run.h5 holds, up to step {}, can be used", out_.last_step) : "run it again");
+        problem(name, "is missing: the run did not end in order", out_.samples > 0 ? fmt::format("what run.h5 holds, up to step {}, can be used",
+            out_.last_step) : "run it again");
       return;
     }
     out_.is_output = true;
@@ -350,7 +364,8 @@ class Checker {
     double sum = 0, samples = 0;
     for (std::size_t i = 0; i < std::min(run_.strain.size(), run_.relative_viscosity.size()); ++i)
       if (run_.strain[i] >= from - 1e-12) sum += run_.relative_viscosity[i], ++samples;
-    if (std::isfinite(mean) && std::isfinite(from) && samples > 0 && !(std::abs(sum / samples - mean) <= 1e-9 * std::abs(mean))) disagree("relative_viscosity", mean, sum / samples);
+    if (std::isfinite(mean) && std::isfinite(from) && samples > 0 && !(std::abs(sum / samples - mean) <= 1e-9 * std::abs(mean)))
+        disagree("relative_viscosity", mean, sum / samples);
     if (const double drift = number("volume_drift_max"); std::isfinite(drift) && !run_.volume_drift_max.empty()) {
       const double largest = *std::max_element(run_.volume_drift_max.begin(), run_.volume_drift_max.end());
       if (!(std::abs(largest - drift) <= 1e-9 * std::abs(largest) + 1e-15)) disagree("volume_drift_max", drift, largest);
@@ -376,7 +391,8 @@ std::string what_is_kept(const fs::path& directory) {
     const std::size_t rows = file.shape("/series/step").at(0);
     if (rows == 0) return fmt::format("What was written until then is kept in {}: no sample yet.", directory.string());
     const auto last = file.read_rows<std::int64_t>("/series/step", rows - 1, 1).values;
-    return fmt::format("What was written until then is kept in {}: the series up to step {} ({} samples), and whole snapshots.", directory.string(), last.at(0), rows);
+    return fmt::format("What was written until then is kept in {}: the series up to step {} ({} samples), and whole snapshots.", directory.string(),
+        last.at(0), rows);
   } catch (const std::exception& error) {
     return fmt::format("What was written until then is in {}, but can't be read ({}).", directory.string(), error.what());
   }

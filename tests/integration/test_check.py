@@ -99,6 +99,18 @@ with tempfile.TemporaryDirectory() as temporary:
     answer = check(good)
     expect(answer.returncode == 0 and "all is well" in answer.stdout, "text for people: " + answer.stdout)
 
+    # NaN where a number has no meaning is no fault: other flows, no cells.
+    for name, scene in {
+        "poiseuille": SCENE.replace("[flow]", '[flow]\nkind = "poiseuille"'),
+        "rest": SCENE.replace("capillary_number = 0.1", 'kind = "rest"').replace("series_every = 0.002\nsnapshot_every = 0.01", ""),
+        "no cells": '[box]\nsize = [5, 5, 5]\n[accuracy]\nradius = 4\n[run]\nsteps = 20\n',
+        "periodic": '[box]\nsize = [5, 5, 5]\nwalls = false\n[flow]\nkind = "rest"\n[accuracy]\nradius = 4\n[run]\nsteps = 20\n',
+    }.items():
+        (work / "other.toml").write_text(scene)
+        run = subprocess.run([program, "run", str(work / "other.toml"), "--output", str(work / name)], capture_output=True, text=True)
+        expect(run.returncode == 0, f"{name}: {run.stderr}")
+        expect(problems(work / name)["problems"] == [], f"{name} is well: {problems(work / name)['problems']}")
+
     expect(check(work / "none").returncode == 2, "no such directory: exit code 2")
     (work / "empty").mkdir()
     answer = check(work / "empty")
