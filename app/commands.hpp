@@ -34,6 +34,13 @@ struct ResumeOptions {
 };
 int resume(const ResumeOptions& options);
 
+struct CheckOptions {
+  std::string directory;
+  bool json = false;
+};
+/// Exit code 0: all is well, 1: problems were found, 2: not the results of a run.
+int check(const CheckOptions& options);
+
 struct StabilityOptions {
   std::string output = "results/stability";  ///< directory of stability.json; a search that was interrupted goes on there
   std::vector<std::string> only;             ///< parameters; empty: all

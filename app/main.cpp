@@ -74,6 +74,11 @@ int main(int argc, char** argv) {
   resume->add_option("--threads", resume_options.threads, "Number of host threads (default: OMP_NUM_THREADS, else all cores)")->type_name("N")->check(CLI::Range(1, 4096));
   resume->add_flag("--profile", resume_options.profile, "Print the time of each operator at the end, and write it into summary.json");
 
+  app::CheckOptions check_options;
+  auto* check = program.add_subcommand("check", "Verify the results in a directory, of a finished, broken or running run: 0 all is well, 1 problems, 2 not results of a run");
+  check->add_option("DIR", check_options.directory, "Directory that run wrote")->required();
+  check->add_flag("--json", check_options.json, "Machine-readable output");
+
   app::StabilityOptions stability_options;
   auto* stability = program.add_subcommand("stability", "Search for the stability limits that plan and run use (docs/stability.md); an interrupted search goes on where it stopped");
   stability->add_option("-o,--output", stability_options.output, "Directory of the results, stability.json (default: results/stability)")->type_name("DIR");
@@ -88,6 +93,7 @@ int main(int argc, char** argv) {
     return fail(exit_code::bad_input, (std::string(error.what()) + "; see corpuscle --help").c_str());
   }
   try {
+    if (*check) return app::check(check_options);
     if (*stability) return app::stability(stability_options);
     if (*resume) return app::resume(resume_options);
     return *plan ? app::plan(plan_options) : app::run(run_options);

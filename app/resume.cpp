@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/time_loop.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/lock.hpp"
 #include "io/scene.hpp"
 
 namespace corpuscle::app {
@@ -72,6 +74,8 @@ int resume(const ResumeOptions& options) {
   const WallTime wall_time(options.wall_time.empty() ? 0 : parse_wall_time(options.wall_time));
   const auto changes = changes_of(options);
   std::vector<std::string> notes;
+  std::optional<DirectoryLock> lock;
+  if (std::error_code error; fs::is_directory(directory, error)) lock.emplace(directory);
   const CheckpointFile file = open_newest_checkpoint(directory, notes);
   const Checkpoint& from = file.contents();
   const Problem before = scene_of(file, directory, {});

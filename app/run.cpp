@@ -1,15 +1,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <optional>
+#include <vector>
 
 #include "app/commands.hpp"
+#include "app/replaced_results.hpp"
 #include "app/time_loop.hpp"
 #include "core/error.hpp"
+#include "io/lock.hpp"
 #include "io/packing_file.hpp"
 #include "io/progress.hpp"
 #include "io/scene.hpp"
@@ -20,13 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array output_names{"checkpoint-a.h5", "checkpoint-b.h5",      "checkpoint.tmp", "run.h5",
-                                  "run.h5.journal",  "summary.json",         "cells.vtkhdf",   "cells.vtkhdf.journal",
-                                  "fluid.vtkhdf",    "fluid.vtkhdf.journal", "broken.vtkhdf",  "broken.vtkhdf.journal",
-                                  "broken_fluid.vtkhdf", "broken_fluid.vtkhdf.journal"};
-
 /// Refuses directories that hold results or cannot be written; creates nothing.
-void check_output(const fs::path& directory, bool overwrite) {
+void check_output(const fs::path& directory, bool overwrite, bool locked_by_this_run = false) {
   std::error_code error;
   fs::path existing = fs::absolute(directory);
   while (!existing.empty() && !fs::exists(existing, error)) existing = existing.parent_path();
@@ -34,19 +31,25 @@ void check_output(const fs::path& directory, bool overwrite) {
     throw InputError(fmt::format("--output {}: {} is not a directory; choose another place.", directory.string(), existing.string()));
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
-  for (const char* name : output_names)
-    if (!overwrite && fs::exists(directory / name, error))
+  if (!locked_by_this_run) require_unlocked(directory);
+  if (overwrite) return;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    if (is_result(name) && name != "packing.h5" && name != "scene.toml")  // these two may well be what the run starts from
       throw InputError(fmt::format("--output {} holds the results of an earlier run ({}); "
                                    "choose another directory, add --overwrite to replace them, or go on with corpuscle resume.",
                                    directory.string(), name));
+  }
 }
 
-/// Removes the results of an earlier run, except the packing that this run starts from.
+/// Removes what this run has written, but not the packing that it starts from.
 void remove_outputs(const fs::path& directory, const fs::path& packing_in_use) {
-  std::error_code error;
-  for (const char* name : output_names) fs::remove(directory / name, error);
-  for (const char* name : {"packing.h5", "scene.toml"})
-    if (packing_in_use.empty() || !fs::equivalent(directory / name, packing_in_use, error)) fs::remove(directory / name, error);
+  std::error_code error, differs;
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (is_result(entry.path().filename().string())) paths.push_back(entry.path());
+  for (const auto& path : paths)
+    if (packing_in_use.empty() || !fs::equivalent(path, packing_in_use, differs)) fs::remove(path, error);
 }
 
 /// Packs with a line that tells how far it is: redrawn on a terminal, every tenth in a log.
@@ -92,26 +95,39 @@ int run(const RunOptions& options) {
 
   // Before anything old is removed: this is where memory runs out.
   const auto suspension = make_suspension(problem, lattice, types, packing.positions);
+  if (packs_cells(problem, types)) suspension->settle();
+  SeriesSummary series(lattice, problem.run.discard);
+  Checkpoints checkpoints(directory, problem, lattice);
   std::error_code error;
   const bool existed = fs::exists(directory, error);
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
-  remove_outputs(directory, problem.run.packing);
+  std::optional<DirectoryLock> lock;
+  std::optional<ReplacedResults> replaced;
   std::optional<Outputs> created;
   try {
+    lock.emplace(directory);
+    check_output(directory, options.overwrite, lock.has_value());  // another run may have come and gone while this one was packing
+    replaced.emplace(directory, problem.run.packing);
     std::ofstream scene(directory / "scene.toml");
     if (!(scene << to_toml(problem) << std::flush)) throw OutputError((directory / "scene.toml").string() + " can't be written (is the disk full?)");
     if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
     created.emplace(directory, problem, lattice, types);
+    try {
+      checkpoints.write(*suspension, *created, series, 0, 0);  // from now on, whatever happens, the run can be resumed
+    } catch (const SimulationError&) {  // a broken start: the time loop finds it too, and says so with the state for inspection
+    }
   } catch (const OutputError& failed) {  // nothing has been computed: leave nothing behind
-    remove_outputs(directory, problem.run.packing);
+    if (replaced) {
+      remove_outputs(directory, problem.run.packing);
+      replaced->restore();
+    }
+    lock.reset();
     if (!existed) fs::remove(directory, error);
     throw InputError(fmt::format("--output {}: {}; make room or choose another place.", directory.string(), failed.what()));
   }
+  replaced->discard();
   packing.positions = {};
-  if (packs_cells(problem, types)) suspension->settle();
-  SeriesSummary series(lattice, problem.run.discard);
-  Checkpoints checkpoints(directory, problem, lattice);
   return run_to_end({directory, lattice, *suspension, *created, series, checkpoints, 0, 0, wall_time, options.profile});
 }
 

@@ -26,6 +26,7 @@ extern "C" void on_signal(int signal) {
 
 void listen_to_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, on_signal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, not the end of the process
 }
 
 Stop signal_received() { return received; }

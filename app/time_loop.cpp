@@ -12,6 +12,7 @@
 #include "app/profile.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/output_check.hpp"
 #include "io/progress.hpp"
 #include "io/scene.hpp"
 
@@ -121,7 +122,7 @@ RunEnd simulate(const ReadyRun& run) {
   const auto checkpoint = [&] { run.checkpoints.write(run.suspension, run.outputs, run.series, end.steps, run.earlier_seconds + timer.seconds()); };
   Stop stop = Stop::none;
   try {
-    if (run.first_step == 0) checkpoint();  // from now on, whatever happens, the run can be resumed
+    if (run.first_step == 0) checkpoint();  // unless the start is broken, there is one
     for (; end.steps < lattice.steps; ++end.steps) {
       const std::int64_t step = end.steps;
       stop = stop_asked(run);
@@ -151,7 +152,7 @@ RunEnd simulate(const ReadyRun& run) {
     end.code = exit_code::broken_run;
   } catch (const OutputError& failed) {  // the disk is full, the directory gone ...: end in order, keep what was flushed
     end.stopped_by = "output error";
-    end.failure = failed.what();
+    end.failure = failed.what() + std::string(".");
     end.code = exit_code::failure;
   }
   Kokkos::fence();
@@ -189,19 +190,22 @@ int run_to_end(const ReadyRun& run) {
   summary.warnings = run.lattice.warnings;
   std::string failure = end.failure;
   int code = end.code;
-  try {
-    run.outputs.flush();
-    if (profile) summary.profile = profile->times();
-    write_summary(run.directory / "summary.json", summary);
-  } catch (const OutputError& failed) {
-    if (failure.empty()) failure = failed.what();
-    if (code == exit_code::success) code = exit_code::failure;
-  }
+  const auto attempt = [&](const auto& write) {  // each on its own: a small summary may fit where the series doesn't
+    try {
+      write();
+    } catch (const OutputError& failed) {
+      if (failure.empty()) failure = failed.what() + std::string(".");
+      if (code == exit_code::success) code = exit_code::failure;
+    }
+  };
+  attempt([&] { run.outputs.flush(); });
+  if (profile) summary.profile = profile->times();
+  attempt([&] { write_summary(run.directory / "summary.json", summary); });
   if (profile) std::cout << profile_table(summary.profile);
   std::cout << result_line(summary, run.directory) << std::endl;
   if (code == exit_code::to_be_continued || code == exit_code::interrupted)
     std::cout << fmt::format("stopped by {}; corpuscle resume {} goes on", end.stopped_by, run.directory.string()) << std::endl;
-  if (!failure.empty()) std::cerr << "error: " << failure << " What was written until then is kept in " << run.directory.string() << "." << std::endl;
+  if (!failure.empty()) std::cerr << "error: " << failure << " " << what_is_kept(run.directory) << std::endl;
   return code;
 }
 

@@ -109,29 +109,6 @@ std::size_t product(const Shape& shape) {
 
 }  // namespace
 
-void reserve_space(const std::filesystem::path& path, std::size_t bytes) {
-  const auto refuse = [&](const std::string& reason) {
-    throw OutputError(fmt::format("{}: {:.1f} MB more can't be written: {}; what was written before is kept", path.string(),
-                                  static_cast<double>(bytes) / 1e6, reason));
-  };
-  std::error_code error;
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const auto space = std::filesystem::space(folder, error);
-  if (error) refuse(error.message());
-  if (space.available < bytes) refuse(fmt::format("No space left on device ({:.1f} MB left)", static_cast<double>(space.available) / 1e6));
-#ifdef __linux__
-  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (file < 0) return;  // a new file: there is nothing to lose
-  const off_t size = ::lseek(file, 0, SEEK_END);
-  // HDF5 ignores bytes behind its own end of file and cuts them off when it closes the file.
-  const int failed = ::fallocate(file, 0, size, static_cast<off_t>(bytes)) == 0 ? 0 : errno;
-  const bool can_tell = failed != EOPNOTSUPP && failed != ENOSYS;
-  if (failed != 0) (void)!::ftruncate(file, size);
-  ::close(file);
-  if (failed != 0 && can_tell) refuse(std::strerror(failed));
-#endif
-}
-
 File::File(std::int64_t id, std::filesystem::path path) : id_(id), path_(std::move(path)) {}
 
 File File::create(const std::filesystem::path& path) {
@@ -260,7 +237,9 @@ std::string File::string_attribute(const std::string& object, const std::string&
   const std::string doing = "reading attribute " + name + " of " + object;
   const Handle attribute(check(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), doing), H5Aclose);
   const Handle stored(check(H5Aget_type(attribute), doing), H5Tclose);
-  if (H5Tget_class(stored) != H5T_STRING) fail(doing + " as text");
+  const Handle space(check(H5Aget_space(attribute), doing), H5Sclose);
+  // Several texts, or none, would be written behind the one there is room for.
+  if (H5Tget_class(stored) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) fail(doing + " as text");
   if (H5Tis_variable_str(stored) <= 0) {
     std::string text(H5Tget_size(stored), '\0');
     check(H5Aread(attribute, stored, text.data()), doing);
@@ -283,7 +262,11 @@ std::vector<double> File::numbers_attribute(const std::string& object, const std
   return values;
 }
 
-double File::number_attribute(const std::string& object, const std::string& name) const { return numbers_attribute(object, name).at(0); }
+double File::number_attribute(const std::string& object, const std::string& name) const {
+  const auto values = numbers_attribute(object, name);
+  if (values.size() != 1) fail("reading attribute " + name + " of " + object + " as a number");
+  return values.front();
+}
 
 template <class T>
 void File::write(const std::string& name, std::span<const T> values, const Shape& shape) {
@@ -314,7 +297,9 @@ std::vector<std::string> File::read_strings(const std::string& name) const {
   const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), doing), H5Dclose);
   const Handle space(check(H5Dget_space(data), doing), H5Sclose);
   const Handle type(utf8_string_type(), H5Tclose);
-  std::vector<char*> texts(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space), doing)));
+  const auto count = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space), doing));
+  require_stored(name, {count}, sizeof(std::uint64_t));  // the address of a text takes 16 bytes in the file
+  std::vector<char*> texts(count);
   check(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), doing);
   std::vector<std::string> values(texts.begin(), texts.end());
   H5Dvlen_reclaim(type, space, H5P_DEFAULT, texts.data());
@@ -379,13 +364,49 @@ Shape File::shape(const std::string& name) const {
   return {extents.begin(), extents.end()};
 }
 
+void File::require_stored(const std::string& name, const Shape& shape, std::size_t element_bytes) const {
+  // A damaged or malicious file may claim any shape; memory is asked for only when the file is large enough to hold the numbers.
+  const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "reading " + name), H5Dclose);
+  const Handle properties(check(H5Dget_create_plist(data), "reading " + name), H5Pclose);
+  const double compression = H5Pget_nfilters(properties) > 0 ? 1000 : 1;  // deflate can't do better
+  hsize_t bytes = 0;
+  check(H5Fget_filesize(id_, &bytes), "reading the size of the file");
+  double asked = static_cast<double>(element_bytes);
+  for (const auto extent : shape) asked *= static_cast<double>(extent);
+  if (asked > compression * static_cast<double>(bytes))
+    throw OutputError(fmt::format("{}: {} claims to hold {:.3g} bytes, more than the file; it is damaged", path_.string(), name, asked));
+}
+
 template <class T>
 Array<T> File::read(const std::string& name) const {
   const std::string doing = "reading " + name;
   Array<T> result{shape(name), {}};
-  result.values.resize(product(result.shape));
   const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), doing), H5Dclose);
+  const Handle stored(check(H5Dget_type(data), doing), H5Tclose);
+  require_stored(name, result.shape, H5Tget_size(stored));
+  result.values.resize(product(result.shape));
   if (!result.values.empty()) check(H5Dread(data, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()), doing);
+  return result;
+}
+
+template <class T>
+Array<T> File::read_rows(const std::string& name, std::size_t first, std::size_t count) const {
+  const std::string doing = "reading " + name;
+  Array<T> result{shape(name), {}};
+  if (result.shape.empty() || first + count > result.shape[0]) fail(doing + ": rows beyond its end");
+  result.shape[0] = count;
+  const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), doing), H5Dclose);
+  const Handle stored(check(H5Dget_type(data), doing), H5Tclose);
+  require_stored(name, result.shape, H5Tget_size(stored));
+  result.values.resize(product(result.shape));
+  if (result.values.empty()) return result;
+  std::vector<hsize_t> start(result.shape.size(), 0);
+  start[0] = first;
+  const auto extents = to_dimensions(result.shape);
+  const Handle file_space(check(H5Dget_space(data), doing), H5Sclose);
+  check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, extents.data(), nullptr), doing);
+  const Handle memory(check(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), doing), H5Sclose);
+  check(H5Dread(data, native_type<T>(), memory, file_space, H5P_DEFAULT, result.values.data()), doing);
   return result;
 }
 
@@ -393,7 +414,8 @@ Array<T> File::read(const std::string& name) const {
   template void File::write<T>(const std::string&, std::span<const T>, const Shape&); \
   template void File::create_rows<T>(const std::string&, const RowLayout&);           \
   template void File::append<T>(const std::string&, std::span<const T>);              \
-  template Array<T> File::read<T>(const std::string&) const;
+  template Array<T> File::read<T>(const std::string&) const;                          \
+  template Array<T> File::read_rows<T>(const std::string&, std::size_t, std::size_t) const;
 CORPUSCLE_HDF5_TYPE(double)
 CORPUSCLE_HDF5_TYPE(float)
 CORPUSCLE_HDF5_TYPE(std::int64_t)

@@ -88,10 +88,14 @@ class File {
   Shape shape(const std::string& name) const;
   template <class T>
   Array<T> read(const std::string& name) const;
+  /// Rows [first, first + count) along the first dimension: large datasets in pieces.
+  template <class T>
+  Array<T> read_rows(const std::string& name, std::size_t first, std::size_t count) const;
 
  private:
   File(std::int64_t id, std::filesystem::path path);
   void set_numbers(const std::string& object, const std::string& name, std::int64_t type, const void* values, std::size_t count, bool scalar);
+  void require_stored(const std::string& name, const Shape& shape, std::size_t element_bytes) const;
   [[noreturn]] void fail(const std::string& doing) const;
   std::int64_t check(std::int64_t result, const std::string& doing) const;
 
@@ -99,9 +103,5 @@ class File {
   std::filesystem::path path_;
   std::shared_ptr<Transaction> transaction_;  ///< of a file that is open for appending
 };
-
-/// Makes sure that a file can grow by `bytes` (disk, quota, size limits), for a new file only by the disk's free space. Called before open_for_append it
-/// tells at once, rather than after all has been written. Closing the file gives back what wasn't used. @throws OutputError with the system's reason.
-void reserve_space(const std::filesystem::path& path, std::size_t bytes);
 
 }  // namespace corpuscle::hdf5

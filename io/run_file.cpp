@@ -272,21 +272,26 @@ void RunFile::cut(hdf5::File& file) const {
 void RunFile::flush() {
   last_flush_ = std::chrono::steady_clock::now();
   if (steps_.empty()) return;
-  hdf5::reserve_space(path_, 2 * waiting_bytes_ + (std::size_t{1} << 20));  // chunks round up
   auto file = hdf5::File::open_for_append(path_);
-  if (std::exchange(incomplete_, true)) cut(file);  // the last flush failed half-way: start again from whole rows
   file.append<std::int64_t>("/series/step", steps_);
   for (std::size_t i = 0; i < series_.size(); ++i) file.append<double>(in_series(series_quantities()[i].name), series_[i]);
   if (options_.trajectories) {
     for (std::size_t i = 0; i < cells_.size(); ++i) file.append<double>(in_cells(cell_quantities()[i].name), cells_[i]);
   }
   file.close();
-  incomplete_ = false;
   rows_written_ += steps_.size();
   steps_.clear();
   for (auto& rows : series_) rows.clear();
   for (auto& rows : cells_) rows.clear();
   waiting_bytes_ = 0;
+}
+
+std::vector<std::string> run_file_rows(bool trajectories) {
+  std::vector<std::string> names{"/series/step"};
+  for (const auto& quantity : series_quantities()) names.push_back(in_series(quantity.name));
+  if (trajectories)
+    for (const auto& quantity : cell_quantities()) names.push_back(in_cells(quantity.name));
+  return names;
 }
 
 std::vector<Sample> read_series(const std::filesystem::path& path) {

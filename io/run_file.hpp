@@ -68,9 +68,11 @@ class RunFile {
   std::vector<std::vector<double>> cells_;   ///< likewise of /cells
   std::size_t waiting_bytes_ = 0;
   std::size_t rows_written_ = 0;
-  bool incomplete_ = false;                  ///< a flush has begun and not ended well
   std::chrono::steady_clock::time_point last_flush_;
 };
+
+/// Absolute names of the datasets with a row for every sample: "/series/step", ..., with `trajectories` also "/cells/centre", ...
+std::vector<std::string> run_file_rows(bool trajectories);
 
 /// Reads /series (not /cells) of a run.h5 back, in order. @throws OutputError when the file can't be read.
 std::vector<Sample> read_series(const std::filesystem::path& path);

@@ -26,6 +26,9 @@ struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 
+/// Each type has a mesh of its own; a file of a few megabytes could ask for a million.
+constexpr std::size_t most_cell_types = 1000;
+
 /// Fills a Problem from a Document, one key of the table at a time.
 class Reader {
  public:
@@ -64,6 +67,10 @@ class Reader {
   void read_cells(const toml::node& node) {
     const toml::array* types = node.as_array();
     if (types == nullptr) fail("cells", node, "must be a list of tables: write [[cells]] with two brackets for each cell type");
+    if (types->size() > most_cell_types) {
+      fail("cells", node, fmt::format("lists {} cell types, but at most {} are possible: give cells of one kind one type with a count", types->size(),
+                                      most_cell_types));
+    }
     problem_.cells.resize(types->size());
     for (std::size_t i = 0; i < types->size(); ++i) {
       const std::string path = fmt::format("cells.{}", i);

@@ -58,6 +58,28 @@ std::size_t stray_character(std::string_view text) {
   return std::string_view::npos;
 }
 
+/// toml::parse without its undefined behaviour: it must not see a non-ASCII character outside of strings and comments, and where a string
+/// begins is only certain in valid TOML. So a copy in ASCII is parsed first; with that accepted, stray_character() has told the truth.
+toml::table parse_toml(std::string_view text) {
+  std::string ascii(text);
+  std::replace_if(ascii.begin(), ascii.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, 'x');
+  if (ascii != text) (void)toml::parse(ascii);
+  return toml::parse(text);
+}
+
+/// Line with more nested tables than any scene has, in dotted keys or headers; 0 if there is none. toml++ bounds the depth of brackets but
+/// not of dotted keys, and destroys a table by recursion: 100 000 dots overflow the stack.
+std::ptrdiff_t too_deep_line(std::string_view text) {
+  constexpr std::ptrdiff_t most_dots = 500;
+  for (std::ptrdiff_t line = 1; !text.empty(); ++line) {
+    const std::string_view content = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(content.size() + 1, text.size()));
+    // Strings and comments are counted too: none in a scene is a sentence of 500 parts.
+    if (std::count(content.begin(), content.end(), '.') > most_dots) return line;
+  }
+  return 0;
+}
+
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> parts;
   for (std::size_t start = 0;;) {
@@ -75,9 +97,9 @@ bool is_number(std::string_view text) {
 /// The value of an override as a table {v = value}; what isn't one TOML value is a bare string.
 toml::table override_value(const std::string& text) {
   const std::string assignment = "v = " + text;
-  if (text.find_first_of("\r\n") == std::string::npos && stray_character(assignment) == std::string::npos && valid_utf8(text)) {
+  if (text.find_first_of("\r\n") == std::string::npos && stray_character(assignment) == std::string::npos && valid_utf8(text) && too_deep_line(text) == 0) {
     try {
-      toml::table parsed = toml::parse(assignment);
+      toml::table parsed = parse_toml(assignment);
       if (parsed.size() == 1) return parsed;
     } catch (const toml::parse_error&) {  // bare string, below
     }
@@ -171,8 +193,11 @@ Document parse_document(std::string_view text, const std::string& origin, const 
     throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment", document.origin,
                                  1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
   }
+  if (const std::ptrdiff_t line = too_deep_line(text); line > 0) {
+    throw InputError(fmt::format("{}:{}: has more than 500 dots in one line, which no key of a scene needs; correct the line", document.origin, line));
+  }
   try {
-    document.root = toml::parse(text);
+    document.root = parse_toml(text);
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}: isn't valid TOML at column {}: {}", document.origin, error.source().begin.line, error.source().begin.column, one_line(error.description(), 300)));
   }

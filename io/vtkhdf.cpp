@@ -139,7 +139,6 @@ void VtkHdfPolyData::append(const Snapshot& snapshot) {
     }
   }
 
-  hdf5::reserve_space(path_, 2 * 7 * points * sizeof(float) + (std::size_t{1} << 20));
   auto file = hdf5::File::open_for_append(path_);
   const std::size_t step = step_count(file);
   for (const char* name : {"Points", "PointData/velocity", "PointData/deformation"}) cut(file, std::string("/VTKHDF/") + name, step * points);
@@ -216,7 +215,6 @@ void VtkHdfImage::append(const Snapshot& snapshot) {
   std::size_t values = 3;
   for (const int n : nodes_) values *= static_cast<std::size_t>(n);
   if (snapshot.fluid_velocity.size() != values) throw std::logic_error("VtkHdfImage::append: the snapshot doesn't hold the fluid velocity");
-  hdf5::reserve_space(path_, values * sizeof(float) + (std::size_t{1} << 20));
   auto file = hdf5::File::open_for_append(path_);
   const std::size_t step = step_count(file);
   for (const char* name : {"PointData/velocity", "Steps/Values", "Steps/PointDataOffsets/velocity"}) cut(file, std::string("/VTKHDF/") + name, step);

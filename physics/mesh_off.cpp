@@ -1,5 +1,6 @@
 // Object File Format: "OFF", then "vertices faces edges", then one line per vertex (x y z) and per face (3 a b c); '#' starts a comment.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -31,8 +32,10 @@ class OffReader {
                        " should follow; check that it is complete and that the counts in its header are right.");
   }
   bool try_next_line() {
-    while (std::getline(file_, line_)) {
+    while (file_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size())) || file_.gcount() > 0) {
       ++line_number_;
+      line_.assign(buffer_.data(), static_cast<std::size_t>(file_.gcount() - (file_.good() ? 1 : 0)));  // counts the line's end, if there is one
+      if (file_.fail()) fail("the line is longer than " + std::to_string(buffer_.size() - 1) + " characters; write one vertex or face a line.");
       rest_ = std::string_view(line_).substr(0, line_.find('#'));
       if (!at_end_of_line()) return true;
     }
@@ -69,6 +72,7 @@ class OffReader {
  private:
   static constexpr const char* blanks = " \t\r\v\f";
   std::string path_, line_;
+  std::array<char, 8192> buffer_{};  // a file without line ends must not be read as one line of gigabytes
   std::ifstream file_;
   std::string_view rest_;
   long line_number_ = 0;

@@ -134,6 +134,13 @@ TEST_CASE("read_off: malformed files", "[mesh][off]") {
   CHECK(complaint_lacks([&] { read_text(head + tetrahedron_faces, 0); }, {"radius", "positive"}) == "");
 }
 
+TEST_CASE("read_off: a file without line ends is not read as one line", "[mesh][off]") {
+  CHECK(complaint_lacks([] { read_text(std::string(100'000, '0')); }, {"line 1", "longer than 8191 characters"}) == "");
+  CHECK(complaint_lacks([] { read_text("OFF\n4 4 0\n" + tetrahedron_vertices + std::string(10'000, ' ') + tetrahedron_faces); }, {"line 7", "longer"}) == "");
+  CHECK(read_text("OFF\n4 4 0 # " + std::string(8'000, 'x') + "\n" + tetrahedron_vertices + tetrahedron_faces).faces.size() == 4);
+  CHECK(complaint_lacks([] { read_text("OFF\n4 4 0\n" + std::string("0 0\0 0\n", 8) + tetrahedron_faces); }, {"line 3", "coordinate"}) == "");
+}
+
 TEST_CASE("read_off: surfaces that are no cell", "[mesh][off]") {
   SECTION("open") {
     Mesh mesh = icosphere(2);

@@ -14,6 +14,12 @@ using namespace corpuscle;
 
 namespace {
 
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
 struct Bad {
   std::string scene;               ///< TOML text; an override line starts with "--set "
   std::vector<std::string> parts;  ///< what the message must contain
@@ -93,6 +99,12 @@ const std::vector<Bad> bad = {
     {box + "[accuracy]\nrelaxation_time = 9\n", {"accuracy.relaxation_time = 9", "nearest allowed value is 5"}},
     {box + "[accuracy]\nmach_max = 0.5\n", {"accuracy.mach_max = 0.5", "nearest allowed value is 0.3"}},
     {box + "[accuracy]\nradius = 1e9\n", {"accuracy.radius", "<= 100"}},
+    // Found by fuzzing, or by thinking like a fuzzer
+    {"[box]\n" + repeated("a.", 100'000) + "a = 1\n", {":2:", "500 dots"}},
+    {"[" + repeated("a.", 100'000) + "a]\n", {":1:", "500 dots"}},
+    {"box.size = [ 7.0, +box\"box\u00b7 \"1.0 ut]\n", {":1:", "isn't valid TOML"}},
+    {"[box]\nsize = " + repeated("[", 100'000) + "\n", {":2:", "isn't valid TOML"}},
+    {box + "[flow]\ncapillary_number = 0.1\n" + repeated("[[cells]]\ncount = 1\n", 100'000), {"cells lists 100000 cell types", "at most 1000"}},
     // Unknown choices
     {box + "[flow]\nkind = \"sheer\"\n", {"flow.kind = \"sheer\"", "shear, poiseuille, rest", "nearest is \"shear\""}},
     {box + "[accuracy]\npreset = \"fast\"\n", {"accuracy.preset = \"fast\"", "draft, standard, reference"}},
