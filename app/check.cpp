@@ -14,6 +14,8 @@
 
 #include "app/commands.hpp"
 #include "core/error.hpp"
+#include "io/hdf5_transaction.hpp"
+#include "io/lock.hpp"
 #include "io/output_check.hpp"
 
 namespace corpuscle::app {
@@ -51,7 +53,7 @@ void write_line(int pipe, const nlohmann::json& line) {
   nlohmann::json problems = nlohmann::json::array();
   for (const auto& p : result.problems) problems.push_back({{"file", p.file}, {"problem", p.what}, {"advice", p.advice}});
   write_line(pipe, {{"is_output", result.is_output}, {"problems", problems}, {"notes", result.notes}, {"samples", result.samples},
-                    {"last_step", result.last_step}, {"snapshots", result.snapshots}});
+                    {"last_step", result.last_step}, {"snapshots", result.snapshots}, {"resumes_at", result.resumes_at}});
   ::_exit(0);
 }
 
@@ -103,6 +105,10 @@ int check(const CheckOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(options.directory, ignored))
     throw InputError(fmt::format("check {}: there is no such directory; give the one that `corpuscle run --output` wrote.", options.directory));
+  if (options.recover) {
+    const DirectoryLock lock(options.directory);
+    for (const char* name : {"run.h5", "cells.vtkhdf", "fluid.vtkhdf"}) hdf5::recover(std::filesystem::path(options.directory) / name);
+  }
   std::set<std::string> skip;
   nlohmann::json crashes = nlohmann::json::array(), report;
   for (;;) {

@@ -27,6 +27,7 @@ int run(const RunOptions& options);
 struct ResumeOptions {
   std::string directory;
   std::string until;      ///< strain=X, steps=N or duration=X: another length of the run; empty: that of the scene
+  std::vector<std::string> overrides;  ///< "guards.KEY=VALUE" and "output.checkpoint_...=VALUE": what changes no step
   std::string precision;  ///< single or double: another one than the scene's; empty: that of the scene
   std::string wall_time;
   bool profile = false;
@@ -37,6 +38,7 @@ int resume(const ResumeOptions& options);
 struct CheckOptions {
   std::string directory;
   bool json = false;
+  bool recover = false;  ///< first finish, or take back, what a killed run was writing
 };
 /// Exit code 0: all is well, 1: problems were found, 2: not the results of a run.
 int check(const CheckOptions& options);

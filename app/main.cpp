@@ -69,6 +69,8 @@ int main(int argc, char** argv) {
   resume->add_option("DIR", resume_options.directory, "Directory of the run")->required();
   resume->add_option("--until", resume_options.until, "New length of the run: strain=X, steps=N or duration=X (default: that of the scene)")->type_name("KEY=VALUE");
   resume->add_option("--wall-time", resume_options.wall_time, about_wall_time)->type_name("HH:MM:SS");
+  resume->add_option("--set", resume_options.overrides, "Another limit of a guard or cadence of checkpoints: guards.KEY=VALUE, output.checkpoint_every=VALUE ...")
+      ->type_name("KEY=VALUE");
   resume->add_option("--precision", resume_options.precision, "Go on with the fluid in single or double precision (default: as before)")
       ->check(CLI::IsMember({"single", "double"}));
   resume->add_option("--threads", resume_options.threads, "Number of host threads (default: OMP_NUM_THREADS, else all cores)")->type_name("N")->check(CLI::Range(1, 4096));
@@ -78,6 +80,7 @@ int main(int argc, char** argv) {
   auto* check = program.add_subcommand("check", "Verify the results in a directory, of a finished, broken or running run: 0 all is well, 1 problems, 2 not results of a run");
   check->add_option("DIR", check_options.directory, "Directory that run wrote")->required();
   check->add_flag("--json", check_options.json, "Machine-readable output");
+  check->add_flag("--recover", check_options.recover, "First finish, or take back, what a killed run was writing; without it check changes nothing");
 
   app::StabilityOptions stability_options;
   auto* stability = program.add_subcommand("stability", "Search for the stability limits that plan and run use (docs/stability.md); an interrupted search goes on where it stopped");

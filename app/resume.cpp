@@ -38,6 +38,12 @@ std::vector<std::string> changes_of(const ResumeOptions& options) {
       throw InputError(fmt::format("--until {} must be strain=X, steps=N or duration=X, for example --until strain=20", options.until));
     changes.push_back("run." + options.until);
   }
+  for (const auto& change : options.overrides) {
+    if (!change.starts_with("guards.") && !change.starts_with("output.checkpoint_"))
+      throw InputError(fmt::format("--set {} would make another run of it: only guards.KEY and output.checkpoint_KEY can be set when a run is resumed; "
+                                   "start a new one with corpuscle run", change));
+    changes.push_back(change);
+  }
   if (!options.precision.empty()) changes.push_back("accuracy.precision=" + options.precision);
   return changes;
 }

@@ -102,6 +102,12 @@ Prober::Built Prober::build(const ProbeScene& scene) {
   p.accuracy.precision = scene.precision;
   p.accuracy.collision = scene.collision;
   p.accuracy.allow_unstable = true;
+  // What is searched for is whether the steps go on: numbers and speeds. Probes go beyond what a scene would choose; that such a state is a poor one
+  // (pressed cells, a compressed fluid) is told by the guards of a run.
+  constexpr double none = 1e9;
+  p.guards.density = p.guards.volume_drift = p.guards.area_drift = p.guards.penetration = none;
+  p.guards.collapse = 0;
+  p.guards.fold = 180;
   p.accuracy.shell_thickness = 0.3;  // one for all kernels: they share a packing, so that only the kernel differs
   p.accuracy.subdivision = std::max(2, int(std::lround(scene.radius / scene.edge)));
   p.box.size = {4, 4, 4};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -12,14 +13,15 @@
 #include "app/profile.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
-#include "io/output_check.hpp"
+#include "io/output_kept.hpp"
 #include "io/progress.hpp"
 #include "io/scene.hpp"
 
 namespace corpuscle::app {
 
 Checkpoints::Checkpoints(const std::filesystem::path& directory, const Problem& problem, const LatticeParameters& lattice)
-    : store_(directory), every_(60 * problem.output.checkpoint_every), every_steps_(problem.output.checkpoint_steps.value_or(0)) {
+    : store_(directory), every_(60 * problem.output.checkpoint_every), every_steps_(problem.output.checkpoint_steps.value_or(0)),
+      every_strain_(problem.output.checkpoint_strain ? std::max<std::int64_t>(1, std::llround(*problem.output.checkpoint_strain * lattice.steps_per_strain)) : 0) {
   contents_.scene = to_toml(problem);
   contents_.version = version_string();
   contents_.git_revision = git_revision();
@@ -34,7 +36,8 @@ void Checkpoints::go_on_after(const CheckpointFile& file) {
 
 bool Checkpoints::due(std::int64_t step) const {
   if (step == last_step_) return false;
-  if (every_steps_ > 0 && step % every_steps_ == 0) return true;
+  for (const auto every : {every_steps_, every_strain_})
+    if (every > 0 && step % every == 0) return true;
   return every_.count() > 0 && Clock::now() - last_ >= every_;
 }
 
@@ -203,7 +206,7 @@ int run_to_end(const ReadyRun& run) {
   attempt([&] { write_summary(run.directory / "summary.json", summary); });
   if (profile) std::cout << profile_table(summary.profile);
   std::cout << result_line(summary, run.directory) << std::endl;
-  if (code == exit_code::to_be_continued || code == exit_code::interrupted)
+  if (code == exit_code::to_be_continued || code == exit_code::interrupted || code == exit_code::failure)
     std::cout << fmt::format("stopped by {}; corpuscle resume {} goes on", end.stopped_by, run.directory.string()) << std::endl;
   if (!failure.empty()) std::cerr << "error: " << failure << " " << what_is_kept(run.directory) << std::endl;
   return code;

@@ -32,7 +32,7 @@ class Checkpoints {
   CheckpointStore store_;
   Checkpoint contents_;  ///< what is the same each time
   std::chrono::duration<double> every_;
-  std::int64_t every_steps_;
+  std::int64_t every_steps_, every_strain_;  ///< both in time steps; 0: none
   Clock::time_point last_ = Clock::now();
   std::int64_t last_step_ = -1;
   double seconds_to_write_ = 0;

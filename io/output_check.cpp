@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <optional>
 
 #include "core/error.hpp"
+#include "io/checkpoint_check.hpp"
 #include "io/hdf5.hpp"
+#include "io/hdf5_transaction.hpp"
 #include "io/lock.hpp"
+#include "io/run_facts.hpp"
 #include "io/run_file.hpp"
 #include "io/scene.hpp"
+#include "io/summary_check.hpp"
 
 namespace corpuscle {
 namespace {
@@ -20,21 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t piece_values = std::size_t{1} << 20;  // that are read at a time
-
-/// What run.h5 says, to compare the other files with. Empty optionals: it could not be read.
-struct RunFacts {
-  std::optional<std::string> scene;
-  std::optional<bool> walls;
-  FlowKind flow = FlowKind::shear;
-  std::vector<std::int64_t> steps;
-  std::vector<double> strain, relative_viscosity, volume_drift_max;
-  std::vector<std::string> type_names;
-  std::vector<std::int64_t> type_counts, type_vertices;
-  std::vector<double> nodes;
-  double shear_rate = 0;
-  std::int64_t last_step = 0, series_every = 0, snapshot_every = 0;
-  bool readable = false;
-};
 
 class Checker {
  public:
@@ -51,8 +38,9 @@ class Checker {
     compare_snapshots();
     examine("packing.h5", false, [&](const fs::path& path) { packing(path); });
     examine("scene.toml", true, [&](const fs::path& path) { scene(path); });
+    checkpoints();
     try {
-      if (!skip_.contains("summary.json")) summary();
+      if (!skip_.contains("summary.json") && check_summary(directory_ / "summary.json", run_, running_, reading_, out_)) out_.is_output = true;
     } catch (const std::exception& error) {
       problem("summary.json", error.what(), "its means can be computed again from run.h5");
     }
@@ -82,6 +70,8 @@ class Checker {
     out_.is_output = true;
     if (skip_.contains(name)) return;
     progress(name);
+    if (fs::exists(hdf5::journal_path(path), ignored))
+      problem(name, "a write was cut off by a kill", "corpuscle check --recover finishes it, or takes it back; so does corpuscle resume");
     try {
       check(path);
     } catch (const std::exception& error) {
@@ -271,8 +261,7 @@ class Checker {
       points(file, name, "/VTKHDF/PointData/velocity", steps);
       fluid_times_ = std::move(times);
     } else {
-      std::int64_t per_step = 0;
-      for (std::size_t i = 0; i < run_.type_counts.size(); ++i) per_step += run_.type_counts[i] * run_.type_vertices[i];
+      const std::int64_t per_step = run_.vertices();
       const auto stored = file.read<std::int64_t>("/VTKHDF/NumberOfPoints").values;
       if (stored.size() != 1 || stored[0] < 0 || (run_.readable && stored[0] != per_step)) {
         problem(name, fmt::format("has {} points a snapshot instead of {}", stored.empty() ? 0 : stored[0], per_step), "the file belongs to another run");
@@ -312,10 +301,15 @@ class Checker {
     const auto positions = file.read<double>("/positions");
     if (!std::all_of(positions.values.begin(), positions.values.end(), [](double x) { return std::isfinite(x); }))
       problem("packing.h5", "a position is not a finite number", "it can't be used as run.packing; pack anew");
-    double vertices = 0;
-    for (std::size_t i = 0; i < run_.type_counts.size(); ++i) vertices += static_cast<double>(run_.type_counts[i] * run_.type_vertices[i]);
-    if (run_.readable && static_cast<double>(positions.values.size()) != 3 * vertices)
-      problem("packing.h5", fmt::format("has {} coordinates instead of {}", positions.values.size(), 3 * vertices), "it belongs to another run");
+    if (run_.readable && positions.values.size() != 3 * static_cast<std::size_t>(run_.vertices()))
+      problem("packing.h5", fmt::format("has {} coordinates instead of {}", positions.values.size(), 3 * run_.vertices()), "it belongs to another run");
+  }
+
+  void checkpoints() {
+    // Of a run that goes on the checkpoints may be newer than what was read of the series.
+    out_.resumes_at = check_checkpoints(directory_, run_, !running_, skip_, reading_, out_.problems);
+    if (out_.resumes_at >= 0) out_.is_output = true;
+    if (out_.resumes_at >= 0 && !running_) note(fmt::format("corpuscle resume would go on at step {} of {}", out_.resumes_at, run_.last_step));
   }
 
   void scene(const fs::path& path) {
@@ -324,52 +318,6 @@ class Checker {
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(file.gcount()));
     if (run_.scene && text != *run_.scene) problem("scene.toml", "differs from the scene stored in run.h5", "that in run.h5 is what was run");
-  }
-
-  void summary() {
-    const std::string name = "summary.json";
-    std::error_code ignored;
-    const fs::path path = directory_ / name;
-    if (!fs::exists(path, ignored)) {
-      if (out_.is_output && !running_)
-        problem(name, "is missing: the run did not end in order", out_.samples > 0 ? fmt::format("what run.h5 holds, up to step {}, can be used",
-            out_.last_step) : "run it again");
-      return;
-    }
-    out_.is_output = true;
-    progress(name);
-    std::ifstream file(path);
-    const auto json = nlohmann::json::parse(file, nullptr, false);
-    if (!json.is_object()) {
-      problem(name, "is not a JSON object", "its means can be computed again from run.h5");
-      return;
-    }
-    const auto number = [&](const char* key) { return json.contains(key) && json[key].is_number() ? json[key].get<double>() : std::nan(""); };
-    const auto disagree = [&](const std::string& key, double here, double there) {
-      problem(name, fmt::format("{} is {:.9g}, run.h5 says {:.9g}", key, here, there), "the files are of different runs, or one was changed");
-    };
-    const double steps = number("steps");
-    const std::string stopped_by = json.contains("stopped_by") && json["stopped_by"].is_string() ? json["stopped_by"].get<std::string>() : "";
-    if (std::isnan(steps) || stopped_by.empty()) problem(name, "lacks steps or stopped_by", "the file was changed or damaged");
-    if (stopped_by != "end" && !stopped_by.empty()) note(fmt::format("the run was stopped by: {}", stopped_by.substr(0, 100)));
-    if (!run_.readable || run_.steps.empty()) return;
-    const auto last = static_cast<double>(run_.steps.back());
-    if (stopped_by == "end" ? last != steps : last > steps) disagree("steps", steps, last);
-    double cells = 0;
-    for (const auto count : run_.type_counts) cells += static_cast<double>(count);
-    if (number("cell_count") != cells) disagree("cell_count", number("cell_count"), cells);
-    // Of a failed run the last samples may be missing in run.h5.
-    if (stopped_by != "end" && stopped_by != "interrupt") return;
-    const double from = number("averaged_from_strain"), mean = number("relative_viscosity");
-    double sum = 0, samples = 0;
-    for (std::size_t i = 0; i < std::min(run_.strain.size(), run_.relative_viscosity.size()); ++i)
-      if (run_.strain[i] >= from - 1e-12) sum += run_.relative_viscosity[i], ++samples;
-    if (std::isfinite(mean) && std::isfinite(from) && samples > 0 && !(std::abs(sum / samples - mean) <= 1e-9 * std::abs(mean)))
-        disagree("relative_viscosity", mean, sum / samples);
-    if (const double drift = number("volume_drift_max"); std::isfinite(drift) && !run_.volume_drift_max.empty()) {
-      const double largest = *std::max_element(run_.volume_drift_max.begin(), run_.volume_drift_max.end());
-      if (!(std::abs(largest - drift) <= 1e-9 * std::abs(largest) + 1e-15)) disagree("volume_drift_max", drift, largest);
-    }
   }
 
   fs::path directory_;
@@ -382,21 +330,6 @@ class Checker {
 };
 
 }  // namespace
-
-std::string what_is_kept(const fs::path& directory) {
-  std::error_code ignored;
-  if (!fs::exists(directory / "run.h5", ignored)) return fmt::format("Nothing is left: run.h5 is no longer in {}.", directory.string());
-  try {
-    const auto file = hdf5::File::open_for_reading(directory / "run.h5");
-    const std::size_t rows = file.shape("/series/step").at(0);
-    if (rows == 0) return fmt::format("What was written until then is kept in {}: no sample yet.", directory.string());
-    const auto last = file.read_rows<std::int64_t>("/series/step", rows - 1, 1).values;
-    return fmt::format("What was written until then is kept in {}: the series up to step {} ({} samples), and whole snapshots.", directory.string(),
-        last.at(0), rows);
-  } catch (const std::exception& error) {
-    return fmt::format("What was written until then is in {}, but can't be read ({}).", directory.string(), error.what());
-  }
-}
 
 OutputCheck check_output_files(const fs::path& directory, const std::set<std::string>& skip, const std::function<void(const std::string&)>& reading) {
   return Checker(directory, skip, reading).run();

@@ -22,6 +22,7 @@ struct OutputCheck {
   std::int64_t samples = 0;             ///< that are complete in run.h5
   std::int64_t last_step = -1;          ///< of those; -1: none
   std::int64_t snapshots = 0;           ///< that are complete in cells.vtkhdf or fluid.vtkhdf
+  std::int64_t resumes_at = -1;         ///< step of the newest good checkpoint; -1: none
 };
 
 /// Checks every file of docs/outputs.md in `directory`: readable, all datasets of one length, time without gaps, no NaN but the documented
@@ -30,8 +31,5 @@ struct OutputCheck {
 /// the HDF5 library may die of damaged files.
 OutputCheck check_output_files(const std::filesystem::path& directory, const std::set<std::string>& skip = {},
                                const std::function<void(const std::string& file)>& reading = {});
-
-/// A sentence for a run that failed: up to which step its series can be read in `directory`.
-std::string what_is_kept(const std::filesystem::path& directory);
 
 }  // namespace corpuscle

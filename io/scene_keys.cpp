@@ -112,6 +112,7 @@ const Key table[] = {
     {"output.checkpoint_every", CORPUSCLE_FIELD(P.output.checkpoint_every), between(0, 1e6), "", "minutes of computing", "",
      "Time between checkpoints, from which `corpuscle resume` goes on; 0: only at the start, at the end and when the run is stopped"},
     {"output.checkpoint_steps", CORPUSCLE_FIELD(P.output.checkpoint_steps), between(1, many_steps), "", "time steps", "none", "A checkpoint each time that so many steps are done, too"},
+    {"output.checkpoint_strain", CORPUSCLE_FIELD(P.output.checkpoint_strain), positive(many_steps), "", "1/γ̇", "none", "A checkpoint each time that so much strain is done, too; not with `rest`"},
 
     {"si.radius", CORPUSCLE_FIELD(P.si.radius), between(1e-9, 1e-2), "", "", "none", "Large radius r of a cell (with relative_radius = 1)"},
     {"si.viscosity", CORPUSCLE_FIELD(P.si.viscosity), between(1e-6, 1e3), "", "", "none", "Viscosity η₀ of the fluid"},
@@ -158,7 +159,8 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
     return only_if(problem.accuracy.shell_thickness != 0.0, "a shell (accuracy.shell_thickness > 0, or none given)");
   }
   if (key.name == "run.duration" || key.section() == "si") return only_if(!problem.cells.empty(), "[[cells]]");
-  if (key.name == "accuracy.shear_rate") return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
+  if (key.name == "accuracy.shear_rate" || key.name == "output.checkpoint_strain")
+    return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
   if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.section() == "guards" && key.name != "guards.every" && key.name != "guards.speed" && key.name != "guards.density") {
     if (problem.cells.empty()) return only_if(false, "[[cells]]");

@@ -163,7 +163,7 @@ std::string to_toml(const Problem& problem) {
     out += "[cells.stretch]\n";
     write_section(out, "cells.*.stretch", problem, cell);
   }
-  for (const char* section : {"contact", "accuracy", "run", "output"}) {
+  for (const char* section : {"contact", "guards", "accuracy", "run", "output"}) {
     out += fmt::format("[{}]\n", section);
     write_section(out, section, problem, none);
   }

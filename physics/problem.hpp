@@ -133,6 +133,7 @@ struct OutputSpec {
   bool fluid = false;                        ///< velocity field as ImageData at the cadence of the snapshots
   double checkpoint_every = 10;              ///< minutes of wall time between checkpoints; 0: none by time
   std::optional<std::int64_t> checkpoint_steps;  ///< and after this many time steps
+  std::optional<double> checkpoint_strain;   ///< and after this much strain
 };
 
 /// A complete scene.

@@ -71,8 +71,9 @@ std::vector<double> watch(Suspension& suspension, const ProbeLength& length, dou
       verdict.steps += window;
       if (clear(jitter)) break;
     }
-  } catch (const SimulationError&) {
-    verdict.reason = "a vertex is too fast or not a number";
+  } catch (const SimulationError& broken) {
+    const std::string what = broken.what();
+    verdict.reason = what.substr(0, what.find(". "));
     return {};
   }
   verdict.jitter = jitter.back();

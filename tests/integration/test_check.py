@@ -141,6 +141,9 @@ with tempfile.TemporaryDirectory() as temporary:
     damaged("packing", edit("packing.h5", lambda d: set_value(d, "positions", (0, 0), float("nan"))), "packing.h5", "finite")
     damaged("summary steps", rewrite("summary.json", '"steps": 60', '"steps": 80'), "summary.json", "steps is 80")
     damaged("summary mean", rewrite("summary.json", '"cell_count": 2', '"cell_count": 3'), "summary.json", "cell_count is 3")
+    for name in ("checkpoint-a.h5", "checkpoint-b.h5"):
+        damaged("cut " + name, lambda folder, name=name: (folder / name).write_bytes((folder / name).read_bytes()[:-1]), name, "its end is missing")
+    damaged("journal", lambda folder: (folder / "run.h5.journal").write_bytes(b"cut"), "run.h5", "cut off by a kill")
     damaged("no json", lambda folder: (folder / "summary.json").write_text("{"), "summary.json", "JSON")
 
     # Files cut off anywhere, and flipped bits: always an answer. A flipped number can go unnoticed, a cut cannot.
@@ -187,6 +190,9 @@ with tempfile.TemporaryDirectory() as temporary:
     process.wait()
     report = problems(folder)
     expect([p["file"] for p in report["problems"] if p["file"] == "summary.json"] and report["samples"] >= samples, f"after a kill: {report}")
+    expect(report["resumes_at"] >= 0, f"after a kill there is a checkpoint: {report}")
+    (folder / "run.h5.journal").write_bytes(b"cut")
+    expect(check(folder, "--recover").stdout.count("journal") == 0 and not (folder / "run.h5.journal").exists(), "a cut journal is removed with --recover")
     with h5py.File(folder / "run.h5", "r") as data:
         expect(len(data["series/step"]) >= samples, "and h5py still reads them")
     third = subprocess.run([program, "run", str(work / "scene.toml"), "--output", str(folder), "--overwrite"], capture_output=True, text=True)

@@ -72,6 +72,24 @@ def check_damage(program, folder, reference):
     print("a damaged checkpoint is left out")
 
 
+def check_guard(program, folder, reference):
+    """A guard whose limit was too low: the checkpoint before it is kept, and the run goes on with another limit as if nothing had been."""
+    output = folder / "guard"
+    limit = 0.7 * json.loads((reference / "summary.json").read_text())["volume_drift_max"]
+    stopped = command(program, "run", folder / "averaged.toml", "--output", output, "--set", f"guards.volume_drift={limit}", "--set", "output.checkpoint_strain=0.002",
+                      check=3)
+    assert "guards.volume_drift" in stopped.stderr and (output / "broken.vtkhdf").exists(), stopped.stderr
+    report = json.loads(command(program, "check", output, "--json").stdout)
+    assert not report["problems"] and report["resumes_at"] >= 0, report
+    command(program, "resume", output, check=3)
+    command(program, "resume", output, "--set", "guards.volume_drift=0.1")
+    different, compared = differences(reference, output)
+    assert different in ([], ["run.h5:scene"]) and compared > 50, (different, compared)
+    refused = command(program, "resume", output, "--set", "flow.capillary_number=1", check=2)
+    assert refused.stderr.count("\n") == 1 and "flow.capillary_number" in refused.stderr, refused.stderr
+    print("a run that a guard stopped goes on with another limit")
+
+
 def check_stops(program, folder, reference):
     """Each way to stop a run: its exit code, soon, and the same result after resume."""
     for name, send, code in (("interrupt", signal.SIGINT, 130), ("terminate", signal.SIGTERM, 130), ("user signal", signal.SIGUSR1, 75)):
@@ -108,7 +126,9 @@ def main():
     program = sys.argv[1]
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        check_damage(program, folder, check_extension(program, folder))
+        once = check_extension(program, folder)
+        check_damage(program, folder, once)
+        check_guard(program, folder, once)
         (folder / "kills.toml").write_text(SCENE.format(steps=STEPS, checkpoint_steps=41))
         reference = folder / "reference"
         command(program, "run", folder / "kills.toml", "--output", reference, "--threads", 1)

@@ -126,6 +126,19 @@ TEST_CASE("At rest the cadences are steps", "[scene]") {
   check_round_trip(problem);
 }
 
+TEST_CASE("A merged scene names every key that applies to it", "[scene]") {
+  const Problem problem = parse_scene(std::string(simple) + "[guards]\nvolume_drift = 0.01\n", "s.toml");
+  const std::string text = to_toml(problem);
+  CHECK(text.find("volume_drift = 0.01\n") != std::string::npos);
+  for (const auto& key : scene::keys()) {
+    std::string reason;
+    if (key.section() == "si" || key.section() == "cells.*.stretch" || !scene::applies(key, problem, problem.cells.at(0), reason)) continue;
+    const std::string leaf(key.leaf());
+    INFO(key.name);
+    CHECK((text.find("\n" + leaf + " = ") != std::string::npos || text.find("\n# " + leaf + " not set") != std::string::npos));
+  }
+}
+
 TEST_CASE("A merged scene reads back to the same problem", "[scene]") {
   check_round_trip(parse_scene("[box]\nsize = [4, 4, 4]", "s.toml"));
   check_round_trip(parse_scene(simple, "simple.toml"));
