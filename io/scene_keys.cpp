@@ -93,8 +93,9 @@ const Key table[] = {
     {"guards.density", CORPUSCLE_FIELD(P.guards.density), positive(0.9), "", "", "", "… when the density of the fluid differs from 1 by more"},
     {"guards.volume_drift", CORPUSCLE_FIELD(P.guards.volume_drift), positive(10), "", "", "", "… when the volume of a cell differs from that of its reference shape by more than this part of it"},
     {"guards.area_drift", CORPUSCLE_FIELD(P.guards.area_drift), positive(100), "", "", "", "… when the area of a cell differs from that of its reference shape by more than this part of it"},
-    {"guards.collapse", CORPUSCLE_FIELD(P.guards.collapse), Range{0, 1, false, true}, "", "", "", "… when a triangle has less than this part of its reference area"},
-    {"guards.fold", CORPUSCLE_FIELD(P.guards.fold), Range{90, 180, true, false}, "", "degrees", "", "… when the normals of two neighbouring triangles are further apart; 180: never"},
+    {"guards.collapse", CORPUSCLE_FIELD(P.guards.collapse), Range{0, 1, false, true}, "", "", "", "… when triangles have less than this part of their reference area"},
+    {"guards.fold", CORPUSCLE_FIELD(P.guards.fold), Range{90, 180, true, false}, "", "degrees", "", "… when the normals of neighbouring triangles are further apart; 180: never"},
+    {"guards.damaged", CORPUSCLE_FIELD(P.guards.damaged), Range{0, 1, false, true}, "", "", "", "Share of a cell's triangles or edges that may be beyond `collapse` or `fold`; 0: not one"},
     {"guards.penetration", CORPUSCLE_FIELD(P.guards.penetration), positive(1), "", "contact.range", "", "… when a vertex lies deeper inside another cell"},
 
     {"run.strain", CORPUSCLE_FIELD(P.run.strain), positive(1e9), "", "1/γ̇", "", "Length of the run; not with `rest`"},

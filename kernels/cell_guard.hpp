@@ -15,6 +15,7 @@ enum class CellFault : int { not_a_number, speed, outside, jump, volume, area, c
 struct CellLimits {
   double speed, volume_drift, area_drift, collapse;
   double fold_cosine;   ///< of the angle between normals
+  double damaged;       ///< share of a cell's triangles that may be smaller than `collapse`, and of its edges that may be sharper than the fold
   double penetration;   ///< depth
   double contact_range; ///< vertices further from all others than this are not asked for their depth
   double move;          ///< of a cell's centre since it was looked at before
@@ -31,12 +32,15 @@ struct CellState {
   double depth = -1e300;     ///< of a vertex inside another cell
   double moved = 0;
   int broken_vertex = INT32_MAX, fastest = 0, outermost = 0, smallest_face = 0, sharpest_edge = 0, deepest = 0, pierced_cell = 0;
+  int collapsed = 0, folded = 0;  ///< triangles and edges beyond their limits
   CellFault fault = CellFault::none;
 
   KOKKOS_FUNCTION void join(const CellState& other) {
     for (int k = 0; k < 3; ++k) centre[k] += other.centre[k];
     volume += other.volume;
     area += other.area;
+    collapsed += other.collapsed;
+    folded += other.folded;
     broken_vertex = other.broken_vertex < broken_vertex ? other.broken_vertex : broken_vertex;
     if (other.speed_squared > speed_squared) speed_squared = other.speed_squared, fastest = other.fastest;
     if (other.beyond > beyond) beyond = other.beyond, outermost = other.outermost;
@@ -145,6 +149,7 @@ struct CellGuard {
     const double area = 0.5 * Kokkos::sqrt(dot(normal, normal)), ratio = area / tables.face_area(face);
     s.volume += dot(a, normal) / 6;
     s.area += area;
+    s.collapsed += !(ratio >= limits.collapse);
     if (ratio < s.smallest) s.smallest = ratio, s.smallest_face = face;
   }
   KOKKOS_FUNCTION void look_at_edge(CellState& s, const int base, const int edge) const {
@@ -154,6 +159,7 @@ struct CellGuard {
     const double product = dot(left, right);
     if (product >= 0) return;
     const double cosine = product / Kokkos::sqrt(dot(left, left) * dot(right, right));
+    s.folded += cosine < limits.fold_cosine;
     if (cosine < s.sharpest) s.sharpest = cosine, s.sharpest_edge = edge;
   }
   KOKKOS_FUNCTION CellFault judge(const CellState& s, const int type) const {
@@ -163,8 +169,9 @@ struct CellGuard {
     if (s.moved > limits.move) return CellFault::jump;
     if (!(Kokkos::fabs(s.volume / tables.reference_volume(type) - 1) <= limits.volume_drift)) return CellFault::volume;
     if (!(Kokkos::fabs(s.area / tables.reference_area(type) - 1) <= limits.area_drift)) return CellFault::area;
-    if (!(s.smallest >= limits.collapse)) return CellFault::collapse;
-    if (s.sharpest < limits.fold_cosine) return CellFault::fold;
+    // A sharp edge of a soft membrane squeezes single triangles to nothing, and lets go of them again; many at a time are a surface that is no more.
+    if (s.collapsed > limits.damaged * (tables.type_face(type + 1) - tables.type_face(type))) return CellFault::collapse;
+    if (s.folded > limits.damaged * (tables.type_edge(type + 1) - tables.type_edge(type))) return CellFault::fold;
     if (s.depth > limits.penetration) return CellFault::penetration;
     return CellFault::none;
   }

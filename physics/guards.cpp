@@ -127,6 +127,7 @@ void Guards::look_at_cells(const Cells& cells, const Contact* contact, std::int6
   limits.volume_drift = spec_.volume_drift;
   limits.area_drift = spec_.area_drift;
   limits.collapse = spec_.collapse;
+  limits.damaged = spec_.damaged;
   limits.fold_cosine = spec_.fold < 180 ? std::cos(spec_.fold * std::numbers::pi / 180) : -2.0;
   limits.penetration = spec_.penetration * contact_range_;
   limits.contact_range = contact_range_;
@@ -213,14 +214,17 @@ void Guards::stop_for_cell(const Cells& cells, std::int64_t step, CellFault faul
       break;
     case CellFault::collapse: {
       const auto& face = type.reference.faces[std::size_t(s.smallest_face - first_row(tables_.type_face))];
-      what = opening(step, "triangles") + fmt::format("a triangle of {} {} has shrunk to {:.2g} of its area, the limit is {:g} (guards.collapse).", name, at_vertex(base + face[0]),
-                                                      s.smallest, spec_.collapse);
+      what = opening(step, "triangles") + fmt::format("a triangle of {} {} has shrunk to {:.2g} of its area, the limit is {:g} (guards.collapse); {} of {} are beyond it, "
+                                                      "{:g} of them may be (guards.damaged).", name, at_vertex(base + face[0]), s.smallest, spec_.collapse, s.collapsed,
+                                                      type.reference.faces.size(), spec_.damaged);
       break;
     }
     case CellFault::fold: {
       const auto edge = mesh_edges(type.reference)[std::size_t(s.sharpest_edge - first_row(tables_.type_edge))];
-      what = opening(step, "folds") + fmt::format("two triangles of {} {} are folded onto each other, {:.1f} degrees between their normals, the limit is {:g} (guards.fold).", name,
-                                                  at_vertex(base + edge.p), std::acos(std::max(-1.0, s.sharpest)) * 180 / std::numbers::pi, spec_.fold);
+      what = opening(step, "folds") + fmt::format("two triangles of {} {} are folded onto each other, {:.1f} degrees between their normals, the limit is {:g} "
+                                                  "(guards.fold); {} of {} edges are beyond it, {:g} of them may be (guards.damaged).", name, at_vertex(base + edge.p),
+                                                  std::acos(std::max(-1.0, s.sharpest)) * 180 / std::numbers::pi, spec_.fold, s.folded,
+                                                  mesh_edges(type.reference).size(), spec_.damaged);
       break;
     }
     case CellFault::penetration:

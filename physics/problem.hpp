@@ -112,6 +112,7 @@ struct GuardSpec {
   double area_drift = 3;                     ///< |A/A_0 - 1| of a cell
   double collapse = 1e-3;                    ///< smallest area of a triangle / its reference area
   double fold = 175;                         ///< degrees between the normals of two triangles at an edge
+  double damaged = 0.01;                     ///< share of a cell's triangles or edges that may be beyond `collapse` or `fold`
   double penetration = 0.6;                  ///< depth of a vertex below the surface of another cell, in contact.range
 };
 

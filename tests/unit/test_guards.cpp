@@ -1,7 +1,10 @@
 // Every guard, provoked by its fault in an otherwise healthy state.
 #include "physics/guards.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <set>
 #include <limits>
 #include <memory>
 
@@ -158,7 +161,7 @@ TEST_CASE("Guards find a cell whose area has grown", "[guards]") {
 }
 
 TEST_CASE("Guards find a triangle without area", "[guards]") {
-  Guarded g(two_spheres());
+  Guarded g(two_spheres("damaged = 0\n"));
   const auto face = g.mesh().faces[17];
   Guarded::edit(g.cells->positions(), [&](const auto& x) {
     for (int k = 0; k < 3; ++k) x(g.right(face[0]), k) = x(g.right(face[1]), k) + 1e-4 * (x(g.right(face[0]), k) - x(g.right(face[1]), k));
@@ -166,8 +169,29 @@ TEST_CASE("Guards find a triangle without area", "[guards]") {
   check_names(g.message(), "triangles", "a triangle of cell 1 (right) near (", "has shrunk to 0.0001 of its area, the limit is 0.001 (guards.collapse)");
 }
 
+TEST_CASE("Guards let a few triangles of a cell collapse, but not many", "[guards]") {
+  // Two triangles lose their area at each edge that shrinks to a point.
+  const std::size_t triangles = Guarded(two_spheres()).mesh().faces.size();
+  const auto message_after = [&](int edges) {
+    Guarded g(two_spheres(fmt::format("damaged = {}\nfold = 180\n", 7.0 / double(triangles))));
+    const auto all = mesh_edges(g.mesh());
+    std::set<int> used;
+    Guarded::edit(g.cells->positions(), [&](const auto& x) {
+      for (std::size_t i = 0, done = 0; i < all.size() && done < std::size_t(edges); ++i) {
+        if (used.contains(all[i].p) || used.contains(all[i].q)) continue;
+        used.insert({all[i].p, all[i].q, all[i].left, all[i].right});
+        for (int k = 0; k < 3; ++k) x(g.right(all[i].p), k) = x(g.right(all[i].q), k);
+        ++done;
+      }
+    });
+    return g.message();
+  };
+  CHECK(message_after(3).empty());  // 6 triangles
+  check_names(message_after(4), "triangles", "a triangle of cell 1 (right) near (", fmt::format("(guards.collapse); 8 of {} are beyond it", triangles));
+}
+
 TEST_CASE("Guards find a triangle that lies on its neighbour, turned over", "[guards]") {
-  Guarded g(two_spheres());
+  Guarded g(two_spheres("damaged = 0\n"));
   const MeshEdge edge = mesh_edges(g.mesh())[11];
   // One tip goes to the other side of the edge, into the plane of the other triangle.
   Guarded::edit(g.cells->positions(), [&](const auto& x) {
