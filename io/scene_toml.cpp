@@ -198,8 +198,9 @@ Document parse_document(std::string_view text, const std::string& origin, const 
     const std::string_view rest = text.substr(stray);
     std::size_t length = 1;
     while (length < rest.size() && static_cast<unsigned char>(rest[length]) >> 6 == 2) ++length;
-    throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment, and not where a line goes on after a backslash", document.origin,
-                                 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
+    throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment, "
+                                 "and not where a line goes on after a backslash",
+                                 document.origin, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
   }
   if (const std::ptrdiff_t line = too_deep_line(text); line > 0) {
     throw InputError(fmt::format("{}:{}: has more than 500 dots in one line, which no key of a scene needs; correct the line", document.origin, line));

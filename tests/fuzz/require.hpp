@@ -1,6 +1,6 @@
 #pragma once
-// What must hold for every input. Not assert(): release builds check it too. Ends with SIGILL, of which libFuzzer keeps the input too: SIGABRT may also come from
-// the C library, when another library has spoilt its memory.
+// What must hold for every input. Not assert(): release builds check it too. Ends with SIGILL, of which libFuzzer keeps the input too: SIGABRT may
+// also come from the C library, when another library has spoilt its memory.
 #include <cstdio>
 
 #define CORPUSCLE_REQUIRE(condition) \

@@ -99,8 +99,8 @@ class Watch:
 
     def report(self):
         kinds = {fault.split(":")[0] for fault in self.faults}
-        print(f"{self.path.name}: {self.opens} opens, {1e3 * self.open_seconds / self.opens:.1f} ms each, of {self.states} growing states; the file was or may have been "
-              f"changed during {self.changed}; {len(self.faults)} of these saw parts of two states ({', '.join(sorted(kinds)) or 'none'}), "
+        print(f"{self.path.name}: {self.opens} opens, {1e3 * self.open_seconds / self.opens:.1f} ms each, of {self.states} growing states; the file was or may "
+              f"have been changed during {self.changed}; {len(self.faults)} of these saw parts of two states ({', '.join(sorted(kinds)) or 'none'}), "
               f"{self.most_tries} opens in a row at most for a whole one", flush=True)
         for fault in self.faults[:3]:
             print("   ", fault[:200])
