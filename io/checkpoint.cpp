@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* format_name = "corpuscle checkpoint 1";
 constexpr std::array<unsigned char, 8> end_mark{'c', 'o', 'r', 'p', 'h', 'a', 's', 'h'};
+/// Limits of what a checkpoint may say, far beyond those of any run: numbers that become integers, lengths and memory.
+constexpr double largest_count = 9e15, most_nodes_along = 1e6, most_stages = 1e3;
 constexpr std::size_t trailer_bytes = end_mark.size() + sizeof(std::uint64_t);
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) { throw OutputError(fmt::format("{}: {}", path.string(), what)); }
@@ -53,16 +55,6 @@ std::array<unsigned char, trailer_bytes> trailer(std::uint64_t hash) {
   std::copy(end_mark.begin(), end_mark.end(), bytes.begin());
   for (std::size_t i = 0; i < sizeof hash; ++i) bytes[end_mark.size() + i] = static_cast<unsigned char>(hash >> (8 * i));
   return bytes;
-}
-
-/// Puts the hash behind the data and waits until all of it is on disk.
-void seal(const fs::path& path) {
-  const Descriptor file(path, O_RDWR);
-  if (file.number < 0) fail(path, fmt::format("opening the file failed: {}", std::strerror(errno)));
-  const std::uint64_t size = fs::file_size(path);
-  int error = write_at(file.number, size, trailer(hash_of(path, file.number, size)));
-  if (error == 0) error = sync_file(file.number);
-  if (error != 0) fail(path, fmt::format("writing to disk failed: {}", std::strerror(error)));
 }
 
 std::string population_name(int direction) { return fmt::format("/fluid/population_{:02}", direction); }
@@ -118,7 +110,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint, const PopulationSource
   std::error_code error;
   try {
     write_contents(temporary, checkpoint, sequence_ + 1, population);
-    seal(temporary);
+    seal_checkpoint(temporary);
     fs::rename(temporary, target, error);
     if (error) fail(target, fmt::format("renaming {} failed: {}", temporary_name, error.message()));
   } catch (const OutputError&) {
@@ -133,6 +125,15 @@ void CheckpointStore::write(const Checkpoint& checkpoint, const PopulationSource
 void CheckpointStore::go_on_after(const CheckpointFile& file) {
   newest_ = file.path().filename() == names[1] ? 1 : 0;
   sequence_ = file.sequence();
+}
+
+void seal_checkpoint(const fs::path& path) {
+  const Descriptor file(path, O_RDWR);
+  if (file.number < 0) fail(path, fmt::format("opening the file failed: {}", std::strerror(errno)));
+  const std::uint64_t size = fs::file_size(path);
+  int error = write_at(file.number, size, trailer(hash_of(path, file.number, size)));
+  if (error == 0) error = sync_file(file.number);
+  if (error != 0) fail(path, fmt::format("writing to disk failed: {}", std::strerror(error)));
 }
 
 void verify_checkpoint(const fs::path& path) {
@@ -155,29 +156,35 @@ CheckpointFile::CheckpointFile(const fs::path& path)
   if (file_.string_attribute("/", "format") != format_name)
     fail(path, fmt::format("is of the kind \"{}\", but this version reads \"{}\"", file_.string_attribute("/", "format"), format_name));
   Checkpoint& c = contents_;
-  const auto whole = [&](const char* object, const char* name) { return static_cast<std::int64_t>(file_.number_attribute(object, name)); };
+  const auto in_range = [&](const char* name, double value, double least, double most) {
+    if (!(value >= least && value <= most)) fail(path, fmt::format("contradicts itself: {} is {}", name, value));
+    return value;
+  };
+  const auto whole = [&](const char* object, const char* name, double least, double most) {
+    return static_cast<std::int64_t>(in_range(name, file_.number_attribute(object, name), least, most));
+  };
   c.scene = file_.string_attribute("/", "scene");
   c.version = file_.string_attribute("/", "version");
   c.git_revision = file_.string_attribute("/", "git_revision");
   c.seconds = file_.number_attribute("/", "seconds");
-  sequence_ = whole("/", "sequence");
-  c.state.step = whole("/", "step");
+  sequence_ = whole("/", "sequence", 0, largest_count);
+  c.state.step = whole("/", "step", 0, largest_count);
   const auto nodes = file_.numbers_attribute("/", "nodes");
   if (nodes.size() != 3) fail(path, "has no three numbers of nodes");
-  for (std::size_t k = 0; k < 3; ++k) c.nodes[k] = static_cast<int>(nodes[k]);
+  for (std::size_t k = 0; k < 3; ++k) c.nodes[k] = static_cast<int>(in_range("nodes", nodes[k], 1, most_nodes_along));
   c.lattice = file_.read<double>("/lattice").values;
   c.summary = file_.read<double>("/summary").values;
   c.state.positions = file_.read<double>("/vertices/positions").values;
   c.state.velocities = file_.read<double>("/vertices/velocities").values;
   c.state.motion.before = file_.read<double>("/vertices/velocities_before").values;
   c.state.motion.before_that = file_.read<double>("/vertices/velocities_before_that").values;
-  c.state.motion.steps = whole("/vertices", "steps");
-  c.state.motion.stages = whole("/vertices", "stages");
+  c.state.motion.steps = whole("/vertices", "steps", 0, largest_count);
+  c.state.motion.stages = whole("/vertices", "stages", 1, most_stages);
   double_precision_ = file_.string_attribute("/fluid", "precision") == "double";
   const auto matches = [&](const std::vector<double>& values, bool may_be_empty) {
     return values.size() == c.state.positions.size() || (may_be_empty && values.empty());
   };
-  if (c.state.step < 0 || c.state.motion.stages < 1 || !matches(c.state.velocities, false) || !matches(c.state.motion.before, true) ||
+  if (c.state.positions.size() % 3 != 0 || !matches(c.state.velocities, false) || !matches(c.state.motion.before, true) ||
       !matches(c.state.motion.before_that, true))
     fail(path, "contradicts itself: its arrays don't have the same length");
 }

@@ -73,6 +73,8 @@ class CheckpointStore {
 /// @throws InputError when there is none
 CheckpointFile open_newest_checkpoint(const std::filesystem::path& directory, std::vector<std::string>& notes);
 
+/// Puts the hash of a file's bytes behind them and waits until all of it is on disk: what makes an HDF5 file a whole checkpoint. @throws OutputError
+void seal_checkpoint(const std::filesystem::path& path);
 /// Compares the hash at the end of a file with its bytes. @throws OutputError that says what is wrong.
 void verify_checkpoint(const std::filesystem::path& path);
 

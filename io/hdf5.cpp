@@ -241,6 +241,7 @@ std::string File::string_attribute(const std::string& object, const std::string&
   // Several texts, or none, would be written behind the one there is room for.
   if (H5Tget_class(stored) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) fail(doing + " as text");
   if (H5Tis_variable_str(stored) <= 0) {
+    require_room("attribute " + name + " of " + object, static_cast<double>(H5Tget_size(stored)));
     std::string text(H5Tget_size(stored), '\0');
     check(H5Aread(attribute, stored, text.data()), doing);
     return text.substr(0, text.find('\0'));
@@ -257,7 +258,10 @@ std::vector<double> File::numbers_attribute(const std::string& object, const std
   const std::string doing = "reading attribute " + name + " of " + object;
   const Handle attribute(check(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), doing), H5Aclose);
   const Handle space(check(H5Aget_space(attribute), doing), H5Sclose);
-  std::vector<double> values(static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space), doing)));
+  const Handle stored(check(H5Aget_type(attribute), doing), H5Tclose);
+  const auto count = check(H5Sget_simple_extent_npoints(space), doing);
+  require_room("attribute " + name + " of " + object, static_cast<double>(count) * static_cast<double>(H5Tget_size(stored)));
+  std::vector<double> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute, H5T_NATIVE_DOUBLE, values.data()), doing);
   return values;
 }
@@ -332,7 +336,8 @@ void File::append(const std::string& name, std::span<const T> values) {
   const std::string doing = "appending to " + name;
   const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), doing), H5Dclose);
   auto extents = to_dimensions(shape(name));
-  const std::size_t row = product(Shape(extents.begin() + 1, extents.end()));
+  std::size_t row = 1;
+  for (std::size_t k = 1; k < extents.size(); ++k) row *= extents[k];
   if (values.empty() && row == 0) return;
   if (values.size() % row != 0) throw std::logic_error(name + ": values aren't whole rows");
   std::vector<hsize_t> start(extents.size(), 0);
@@ -369,12 +374,16 @@ void File::require_stored(const std::string& name, const Shape& shape, std::size
   const Handle data(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "reading " + name), H5Dclose);
   const Handle properties(check(H5Dget_create_plist(data), "reading " + name), H5Pclose);
   const double compression = H5Pget_nfilters(properties) > 0 ? 1000 : 1;  // deflate can't do better
-  hsize_t bytes = 0;
-  check(H5Fget_filesize(id_, &bytes), "reading the size of the file");
   double asked = static_cast<double>(element_bytes);
   for (const auto extent : shape) asked *= static_cast<double>(extent);
-  if (asked > compression * static_cast<double>(bytes))
-    throw OutputError(fmt::format("{}: {} claims to hold {:.3g} bytes, more than the file; it is damaged", path_.string(), name, asked));
+  require_room(name, asked / compression);
+}
+
+void File::require_room(const std::string& name, double bytes) const {
+  hsize_t file_bytes = 0;
+  check(H5Fget_filesize(id_, &file_bytes), "reading the size of the file");
+  if (bytes > static_cast<double>(file_bytes))
+    throw OutputError(fmt::format("{}: {} claims to hold {:.3g} bytes, more than the file; it is damaged", path_.string(), name, bytes));
 }
 
 template <class T>

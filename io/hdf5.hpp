@@ -96,6 +96,7 @@ class File {
   File(std::int64_t id, std::filesystem::path path);
   void set_numbers(const std::string& object, const std::string& name, std::int64_t type, const void* values, std::size_t count, bool scalar);
   void require_stored(const std::string& name, const Shape& shape, std::size_t element_bytes) const;
+  void require_room(const std::string& name, double bytes) const;
   [[noreturn]] void fail(const std::string& doing) const;
   std::int64_t check(std::int64_t result, const std::string& doing) const;
 

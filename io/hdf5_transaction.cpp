@@ -87,6 +87,22 @@ int apply_journal(std::span<const unsigned char> journal, int file) {
   return sync_file(file);
 }
 
+/// Whether the changes fill a journal to its end, neither more nor less.
+bool consistent(std::span<const unsigned char> content) {
+  JournalHeader header;
+  std::memcpy(&header, content.data(), sizeof header);
+  std::size_t at = sizeof header;
+  for (std::uint64_t i = 0; i < header.changes; ++i) {
+    std::array<std::uint64_t, 2> place{};
+    if (content.size() - at < sizeof place) return false;
+    std::memcpy(place.data(), &content[at], sizeof place);
+    at += sizeof place;
+    if (content.size() - at < place[1]) return false;
+    at += place[1];
+  }
+  return at == content.size();
+}
+
 /// Whether a journal was written to its end.
 bool whole(std::span<const unsigned char> journal) {
   if (journal.size() < sizeof(JournalHeader) + sizeof(std::uint64_t)) return false;
@@ -95,7 +111,7 @@ bool whole(std::span<const unsigned char> journal) {
   std::memcpy(&stored, &journal[content.size()], sizeof stored);
   Hash hash;
   hash.add(content);
-  return hash.value() == stored && std::memcmp(journal.data(), journal_mark.data(), journal_mark.size()) == 0;
+  return hash.value() == stored && std::memcmp(journal.data(), journal_mark.data(), journal_mark.size()) == 0 && consistent(content);
 }
 
 }  // namespace

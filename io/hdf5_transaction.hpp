@@ -12,9 +12,9 @@ namespace corpuscle::hdf5 {
 
 /// What HDF5 writes into one open file. Bytes behind the old end go straight to the file, where nothing refers to them yet; bytes that would overwrite old
 /// ones wait in memory. `commit` writes those to a journal beside the file first (FILE.journal, with a checksum) and then in place: a kill before the journal
-/// is whole leaves the old state, one after it leaves a journal that `recover` applies. Readers see the old or the new state, but for the microseconds of the
-/// last step. No write fails towards HDF5, which cannot close a file after a failed write: the first failure is kept and thrown by `commit`, and the file
-/// stays as it was.
+/// is whole leaves the old state, one after it leaves a journal that `recover` applies. Who opens the file before or after the last step
+/// sees the old or the new state; who has it open during that step may see parts of both, as HDF5 reads its tables when it needs them. No write fails towards
+/// HDF5, which cannot close a file after a failed write: the first failure is kept and thrown by `commit`, and the file stays as it was.
 class Transaction {
  public:
   explicit Transaction(int file) : file_(file) {}

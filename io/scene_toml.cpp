@@ -37,8 +37,8 @@ bool valid_utf8(std::string_view text) {
   return true;
 }
 
-/// Position of the first non-ASCII character outside of strings and comments, where TOML allows none; npos if there is none.
-/// toml++ 3.3 runs into undefined behaviour on some of them instead of reporting them.
+/// Position of the first non-ASCII character outside of strings and comments, where TOML allows none, or first behind the backslash that
+/// continues a line of a string; npos if there is none. toml++ 3.3 runs into undefined behaviour on some of them instead of reporting them.
 std::size_t stray_character(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -48,9 +48,17 @@ std::size_t stray_character(std::string_view text) {
       const bool multi_line = text.substr(i, 3) == std::string(3, c);
       const std::string_view end = text.substr(i, multi_line ? 3 : 1);
       for (i += end.size(); i < text.size() && text.substr(i, end.size()) != end && (multi_line || text[i] != '\n'); ++i) {
-        if (c == '"' && text[i] == '\\') ++i;
+        if (c != '"' || text[i] != '\\') continue;
+        ++i;
+        if (!multi_line || i >= text.size() || std::string_view(" \t\r\n").find(text[i]) == std::string_view::npos) continue;
+        // A line that goes on in the next one: toml++ asks whether what comes there is a blank, and trips over the same characters.
+        i = std::min(text.find_first_not_of(" \t\r\n", i), text.size());
+        if (i < text.size() && static_cast<unsigned char>(text[i]) >= 0x80) return i;
+        --i;
       }
       i += end.size() - 1;
+      // A string of several lines may end in one or two quotes of its own.
+      for (int own = 0; multi_line && own < 2 && i + 1 < text.size() && text[i + 1] == c; ++own) ++i;
     } else if (static_cast<unsigned char>(c) >= 0x80) {
       return i;
     }
@@ -190,8 +198,9 @@ Document parse_document(std::string_view text, const std::string& origin, const 
     const std::string_view rest = text.substr(stray);
     std::size_t length = 1;
     while (length < rest.size() && static_cast<unsigned char>(rest[length]) >> 6 == 2) ++length;
-    throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment", document.origin,
-                                 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
+    throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment, "
+                                 "and not where a line goes on after a backslash",
+                                 document.origin, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
   }
   if (const std::ptrdiff_t line = too_deep_line(text); line > 0) {
     throw InputError(fmt::format("{}:{}: has more than 500 dots in one line, which no key of a scene needs; correct the line", document.origin, line));

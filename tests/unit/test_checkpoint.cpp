@@ -1,7 +1,11 @@
 // Checkpoint files: read back as written, the last two kept, damage noticed.
 #include "io/checkpoint.hpp"
 
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <functional>
+#include <limits>
 
 #include "core/error.hpp"
 #include "tests/catch.hpp"
@@ -145,4 +149,39 @@ TEST_CASE("A checkpoint that can't be written leaves those before it", "[checkpo
   store.write(numbered(3), population<float>);
   CHECK(CheckpointFile(folder / "checkpoint-a.h5").contents().state.step == 1);
   CHECK(CheckpointFile(folder / "checkpoint-b.h5").contents().state.step == 3);
+}
+
+TEST_CASE("A checkpoint that was made to deceive, with the right hash, is refused before its numbers are used", "[checkpoint]") {
+  const ScratchFolder folder;
+  const auto path = folder / "checkpoint-a.h5";
+  const auto deceive = [&](const std::function<void(hdf5::File&)>& change) {
+    CheckpointStore(folder / "").write(numbered(1), population<float>);
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) - 16);  // the hash
+    auto file = hdf5::File::open_for_append(path);
+    change(file);
+    file.close();
+    seal_checkpoint(path);
+    verify_checkpoint(path);
+  };
+  deceive([](hdf5::File&) {});
+  CHECK(CheckpointFile(path).contents().state.step == 1);
+  for (const char* name : {"sequence", "step"}) {
+    deceive([&](hdf5::File& file) { file.set_attribute("/", name, -1.0); });
+    CHECK_THROWS_WITH(CheckpointFile(path), Contains("contradicts itself: " + std::string(name) + " is -1"));
+    deceive([&](hdf5::File& file) { file.set_attribute("/", name, std::numeric_limits<std::int64_t>::max()); });
+    CHECK_THROWS_WITH(CheckpointFile(path), Contains("contradicts itself: " + std::string(name) + " is 9.22"));
+  }
+  for (const double stages : {0.0, 1e9, std::nan("")}) {
+    deceive([&](hdf5::File& file) { file.set_attribute("/vertices", "stages", stages); });
+    CHECK_THROWS_WITH(CheckpointFile(path), Contains("contradicts itself: stages is"));
+  }
+  for (const double n : {-3.0, 0.0, 1e12}) {
+    deceive([&](hdf5::File& file) { file.set_attribute("/", "nodes", std::span<const double>(std::array{3.0, n, 5.0})); });
+    CHECK_THROWS_WITH(CheckpointFile(path), Contains("contradicts itself: nodes is"));
+  }
+  deceive([](hdf5::File& file) {
+    const std::array<std::int64_t, 3> nodes{3, 4, 6};
+    file.set_attribute("/", "nodes", std::span<const std::int64_t>(nodes));
+  });
+  CHECK_THROWS_WITH(CheckpointFile(path).population(0), Contains("doesn't have a number for each node"));
 }

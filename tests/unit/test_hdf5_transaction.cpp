@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/error.hpp"
+#include "io/durable.hpp"
 #include "io/hdf5.hpp"
 #include "tests/catch.hpp"
 #include "tests/contains.hpp"
@@ -161,4 +162,30 @@ TEST_CASE("A kill at any byte of the journal or of the changes in place leaves t
   std::ofstream(journal, std::ios::binary) << notes;
   CHECK(hdf5::recover(path));
   CHECK(bytes_of(path) == new_state);
+}
+
+TEST_CASE("A journal that was made up, with the right hash, touches nothing when its changes don't fill it", "[hdf5]") {
+  const ScratchFolder folder;
+  const auto path = folder / "x.h5", journal = hdf5::journal_path(path);
+  create(path);
+  const auto old_state = bytes_of(path);
+  const auto number = [](std::uint64_t n) { return std::string(reinterpret_cast<const char*>(&n), sizeof n); };
+  const auto with_hash = [&](const std::string& content) {
+    Hash hash;
+    hash.add({reinterpret_cast<const unsigned char*>(content.data()), content.size()});
+    return content + number(hash.value());
+  };
+  const std::uint64_t many = std::uint64_t{1} << 60;
+  const auto size = number(old_state.size());
+  // Changes that aren't there, one that is longer than the journal, one that would wrap around, and bytes that belong to none.
+  for (const std::string& content : {"corpjnl1" + number(many) + size, "corpjnl1" + number(1) + size + number(0) + number(many) + "abc",
+                                     "corpjnl1" + number(1) + size + number(0) + number(~std::uint64_t{0}) + "abc", "corpjnl1" + number(0) + size + "abc"}) {
+    std::ofstream(journal, std::ios::binary) << with_hash(content);
+    CHECK_FALSE(hdf5::recover(path));
+    CHECK_FALSE(std::filesystem::exists(journal));
+    CHECK(bytes_of(path) == old_state);
+  }
+  std::ofstream(journal, std::ios::binary) << with_hash("corpjnl1" + number(1) + size + number(0) + number(3) + old_state.substr(0, 3));
+  CHECK(hdf5::recover(path));
+  CHECK(bytes_of(path) == old_state);
 }

@@ -103,6 +103,11 @@ const std::vector<Bad> bad = {
     {"[box]\n" + repeated("a.", 100'000) + "a = 1\n", {":2:", "500 dots"}},
     {"[" + repeated("a.", 100'000) + "a]\n", {":1:", "500 dots"}},
     {"box.size = [ 7.0, +box\"box\u00b7 \"1.0 ut]\n", {":1:", "isn't valid TOML"}},
+    // Characters that toml++ must not see there: where a line of a string goes on, and behind a string that ends in quotes of its own.
+    {"[box]\nsize = \"\"\"a \\ \n\u02b9\"\"\"\n", {":3:", "isn't valid TOML", "after a backslash"}},
+    {"[box]\nsize = {a = \"\"\"x\"\"\"\", \u02b9 = 1}\n", {":2:", "isn't valid TOML", "inside quotes"}},
+    {"[box]\nsize = {a = '''x''''', \u02b9 = 1}\n", {":2:", "isn't valid TOML", "inside quotes"}},
+    {"[box]\nsize = \"\"\"\u02b9", {"isn't valid TOML"}},
     {"[box]\nsize = " + repeated("[", 100'000) + "\n", {":2:", "isn't valid TOML"}},
     {box + "[flow]\ncapillary_number = 0.1\n" + repeated("[[cells]]\ncount = 1\n", 100'000), {"cells lists 100000 cell types", "at most 1000"}},
     // Unknown choices
