@@ -22,6 +22,7 @@ struct Estimate {
 /// Values over an abscissa (lag, distance, velocity ...). Points without data are NaN.
 struct Curve {
   Eigen::VectorXd x, value, error;
+  double trusted_until = std::numeric_limits<double>::infinity();  ///< errors of points further out are too small
   bool converged = false;
   std::string reason;
 };

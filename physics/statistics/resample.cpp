@@ -57,12 +57,13 @@ Curve with_errors(const BlockedCurve& curve, const std::function<Eigen::VectorXd
   const Resampled resampled = bootstrap(curve.blocks(), statistic, resampling);
   result.value = resampled.value;
   result.error = resampled.error;
+  result.trusted_until = curve.trusted_until();
   if (!curve.reason.empty()) {
     result.reason = curve.reason;
   } else if (curve.blocks() < blocks_to_trust) {
     result.reason = fmt::format("{} blocks are too few for an error (at least {})", curve.blocks(), blocks_to_trust);
-  } else if (curve.x.size() > 0 && curve.x.maxCoeff() > curve.block_length) {
-    result.reason = fmt::format("errors beyond x = {:.3g}, the length of a block, are too small", curve.block_length);
+  } else if (curve.x.size() > 0 && curve.x.maxCoeff() > result.trusted_until) {
+    result.reason = fmt::format("errors beyond x = {:.3g}, half of a block, are too small", result.trusted_until);
   } else {
     result.converged = true;
   }

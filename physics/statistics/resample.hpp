@@ -15,9 +15,11 @@ namespace corpuscle::statistics {
 struct BlockedCurve {
   Eigen::VectorXd x;
   Eigen::MatrixXd sums, counts;  ///< [points][blocks]
-  double block_length = not_a_number;  ///< in units of x where x is a time: points further out share samples between blocks and their error is too small
+  double block_length = not_a_number;  ///< in units of x where x is a time lag and blocks are stretches of time
   std::string reason;            ///< why there is nothing, empty otherwise
 
+  /// Blocks share the samples of pairs that reach over their ends: at lags beyond half of a block errors come out too small.
+  double trusted_until() const { return block_length > 0 ? block_length / 2 : std::numeric_limits<double>::infinity(); }
   Eigen::Index points() const { return sums.rows(); }
   Eigen::Index blocks() const { return sums.cols(); }
   Eigen::VectorXd value() const { return value(Eigen::VectorXd::Ones(blocks())); }
@@ -40,8 +42,8 @@ Resampled bootstrap(Eigen::Index blocks, const Statistic& statistic, const Resam
 
 inline constexpr Eigen::Index blocks_to_trust = 8;  ///< the error of an error from B blocks is 1/sqrt(2(B-1)): 27 % at 8
 
-/// Values and errors of all points, those of `transform` applied to the curve when given. Converged when there are enough blocks, and points not beyond
-/// the block length.
+/// Values and errors of all points, those of `transform` applied to the curve when given. Converged when there are enough blocks and no point lies beyond
+/// `trusted_until`.
 Curve with_errors(const BlockedCurve& curve, const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& transform = {},
                   const Resampling& resampling = {});
 
