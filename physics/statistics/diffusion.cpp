@@ -36,6 +36,43 @@ void doubt(Estimate& estimate, std::string reason) {
   estimate.reason = std::move(reason);
 }
 
+Estimate integral_of(const BlockedCurve& correlation, double to, bool normalised, const Resampling& resampling) {
+  Estimate result;
+  result.reason = correlation.reason;
+  if (!correlation.reason.empty()) return result;
+  constexpr double window_factor = 6, smallest_step = 0.6;
+  const VectorXd c = correlation.value();
+  const Index points = correlation.points();
+  if (points < 2 || !(c[0] > 0)) {
+    result.reason = "nothing fluctuates, or there is one lag only";
+    return result;
+  }
+  Index last = 0;
+  bool closed = false;
+  if (to > 0) {
+    while (last + 1 < points && correlation.x[last + 1] <= to * (1 + 1e-9)) ++last;
+    closed = correlation.x[points - 1] >= to * (1 - 1e-9);
+  } else {
+    double integral = 0;
+    while (last + 1 < points && !closed) {
+      ++last;
+      integral += 0.5 * (correlation.x[last] - correlation.x[last - 1]) * (c[last] + c[last - 1]);
+      closed = correlation.x[last] * c[0] >= window_factor * integral;
+    }
+  }
+  result = estimate_from(correlation, [&](const VectorXd& y) { return trapezoid(correlation.x, y, last) / (normalised ? y[0] : 1); }, resampling);
+  result.correlation_time = result.value / (normalised ? 1 : c[0]);
+  if (!closed) {
+    doubt(result, fmt::format("the correlation hasn't decayed at the longest lag, {:.3g}: its integral is cut short", correlation.x[points - 1]));
+  }
+  if (c[1] < smallest_step * c[0]) doubt(result, "the samples lie too far apart for an integral: the correlation falls below 60 % within one interval");
+  if (correlation.x[last] > correlation.trusted_until()) {
+    doubt(result, fmt::format("the error is too small: the integral reaches {:.3g}, over half of a block, {:.3g}", correlation.x[last], correlation.trusted_until()));
+  }
+  if (!(result.value > 0)) doubt(result, "the integral of the correlation is not positive");
+  return result;
+}
+
 }  // namespace
 
 Estimate diffusion_from_msd(const BlockedCurve& msd, double from, double to, const Resampling& resampling) {
@@ -68,41 +105,10 @@ Estimate diffusion_from_msd(const BlockedCurve& msd, double from, double to, con
   return result;
 }
 
-Estimate diffusion_from_vacf(const BlockedCurve& vacf, double to, const Resampling& resampling) {
-  Estimate result;
-  result.reason = vacf.reason;
-  if (!vacf.reason.empty()) return result;
-  constexpr double window_factor = 6, smallest_step = 0.6;
-  const VectorXd c = vacf.value();
-  const Index points = vacf.points();
-  if (points < 2 || !(c[0] > 0)) {
-    result.reason = "the velocities don't fluctuate, or have one lag only";
-    return result;
-  }
-  Index last = 0;
-  bool closed = false;
-  if (to > 0) {
-    while (last + 1 < points && vacf.x[last + 1] <= to * (1 + 1e-9)) ++last;
-    closed = vacf.x[points - 1] >= to * (1 - 1e-9);
-  } else {
-    double integral = 0;
-    while (last + 1 < points && !closed) {
-      ++last;
-      integral += 0.5 * (vacf.x[last] - vacf.x[last - 1]) * (c[last] + c[last - 1]);
-      closed = vacf.x[last] * c[0] >= window_factor * integral;
-    }
-  }
-  result = estimate_from(vacf, [&](const VectorXd& y) { return trapezoid(vacf.x, y, last); }, resampling);
-  result.correlation_time = result.value / c[0];
-  if (!closed) {
-    doubt(result, fmt::format("the velocity correlation hasn't decayed at the longest lag, {:.3g}: its integral is cut short", vacf.x[points - 1]));
-  }
-  if (c[1] < smallest_step * c[0]) doubt(result, "the samples lie too far apart for an integral: the correlation falls below 60 % within one interval");
-  if (vacf.x[last] > vacf.trusted_until()) {
-    doubt(result, fmt::format("the error is too small: the integral reaches {:.3g}, over half of a block, {:.3g}", vacf.x[last], vacf.trusted_until()));
-  }
-  if (!(result.value > 0)) doubt(result, "the integral of the velocity correlation is not positive");
-  return result;
+Estimate diffusion_from_vacf(const BlockedCurve& vacf, double to, const Resampling& resampling) { return integral_of(vacf, to, false, resampling); }
+
+Estimate relaxation_time(const BlockedCurve& correlation, double to, const Resampling& resampling) {
+  return integral_of(correlation, to, true, resampling);
 }
 
 StretchedDiffusion diffusion_from_stretched_exponential(const BlockedCurve& vacf, double to, const Resampling& resampling) {

@@ -15,6 +15,10 @@ Estimate diffusion_from_msd(const BlockedCurve& msd, double from = 0, double to 
 /// converged where no such lag exists or the samples lie too far apart (C(dt) < 0.6 C(0): the rule's error would be above 2 %).
 Estimate diffusion_from_vacf(const BlockedCurve& vacf, double to = 0, const Resampling& resampling = {});
 
+/// Integral relaxation time of a correlation, int C dt/C(0), with the same window and the same doubts; in units of the lag. For the stress of the whole
+/// suspension, one series, `autocorrelation_time` corrects for the subtracted mean besides.
+Estimate relaxation_time(const BlockedCurve& correlation, double to = 0, const Resampling& resampling = {});
+
 /// From C(t) = C0 exp[-(t/tau)^b] fitted for t <= `to`: D = C0 tau Gamma(1 + 1/b), its integral. The fit comes along; correlation time: D/C0.
 struct StretchedDiffusion {
   Estimate diffusion;

@@ -61,6 +61,31 @@ Index stretches(const SeriesMatrix& values, double mean, Index blocks) {
   return block_count(values.rows(), std::max(autocorrelation_time(squares).time, autocorrelation_time(firsts).time));
 }
 
+// Of the deviation in standard deviations: <d>, <d^2>, <d^3>, <d^4>.
+BlockedCurve powers_of(const SeriesMatrix& values, const Scatter& scatter, Index blocks) {
+  BlockedCurve powers;
+  if (scatter.count == 0) {
+    powers.reason = "there is no valid sample";
+  } else {
+    const Index count = stretches(values, scatter.mean, blocks);
+    const double deviation = std::sqrt(scatter.variance), scale = deviation > 1e-12 * std::abs(scatter.mean) ? 1 / deviation : 0;
+    powers.x = VectorXd::LinSpaced(4, 1, 4);
+    powers.sums = powers.counts = Eigen::MatrixXd::Zero(4, count);
+    for (Index p = 0; p < values.cols(); ++p) {
+      for (Index b = 0; b < count; ++b) {
+        for (Index t = b * values.rows() / count; t < (b + 1) * values.rows() / count; ++t) {
+          const double d = (values(t, p) - scatter.mean) * scale;
+          if (!std::isfinite(d)) continue;
+          double power = 1;
+          for (Index k = 0; k < 4; ++k) powers.sums(k, b) += power *= d;
+          powers.counts.col(b).array() += 1;
+        }
+      }
+    }
+  }
+  return powers;
+}
+
 }  // namespace
 
 Histogram histogram(const SeriesMatrix& values, double from, double to, Index bins, Index blocks) {
@@ -118,26 +143,7 @@ Curve probability_density(const Histogram& histogram, const Resampling& resampli
 
 Moments moments(const SeriesMatrix& values, Index blocks, const Resampling& resampling) {
   const Scatter scatter = scatter_of(values);
-  BlockedCurve powers;  // of the deviation in standard deviations: <d>, <d^2>, <d^3>, <d^4>
-  if (scatter.count == 0) {
-    powers.reason = "there is no valid sample";
-  } else {
-    const Index count = stretches(values, scatter.mean, blocks);
-    const double deviation = std::sqrt(scatter.variance), scale = deviation > 1e-12 * std::abs(scatter.mean) ? 1 / deviation : 0;
-    powers.x = VectorXd::LinSpaced(4, 1, 4);
-    powers.sums = powers.counts = Eigen::MatrixXd::Zero(4, count);
-    for (Index p = 0; p < values.cols(); ++p) {
-      for (Index b = 0; b < count; ++b) {
-        for (Index t = b * values.rows() / count; t < (b + 1) * values.rows() / count; ++t) {
-          const double d = (values(t, p) - scatter.mean) * scale;
-          if (!std::isfinite(d)) continue;
-          double power = 1;
-          for (Index k = 0; k < 4; ++k) powers.sums(k, b) += power *= d;
-          powers.counts.col(b).array() += 1;
-        }
-      }
-    }
-  }
+  const BlockedCurve powers = powers_of(values, scatter, blocks);
   const double deviation = std::sqrt(scatter.variance);
   // Central moments from those about the full data's mean, which a resample's mean differs from.
   const auto variance = [](const VectorXd& m) { return m[1] - m[0] * m[0]; };
@@ -158,6 +164,26 @@ Moments moments(const SeriesMatrix& values, Index blocks, const Resampling& resa
     if (powers.reason.empty() && std::isnan(shape->value)) shape->reason = "all samples are equal: their distribution has no shape";
   }
   return result;
+}
+
+Estimate relative_fluctuation(const SeriesMatrix& values, Index blocks, const Resampling& resampling) {
+  const Scatter scatter = scatter_of(values);
+  const BlockedCurve powers = powers_of(values, scatter, blocks);
+  const double deviation = std::sqrt(scatter.variance);
+  const auto mean = [&](const VectorXd& m) { return scatter.mean + deviation * m[0]; };
+  Estimate ratio = estimate_from(
+      powers,
+      [&](const VectorXd& m) {
+        const double about = std::abs(mean(m));
+        return about > 0 ? deviation * std::sqrt(std::max(m[1] - m[0] * m[0], 0.0)) / about : not_a_number;
+      },
+      resampling);
+  const Estimate level = estimate_from(powers, mean, resampling);
+  if (ratio.converged && std::abs(level.value) < 2 * level.error) {
+    ratio.converged = false;
+    ratio.reason = "the mean is not known to differ from zero: a ratio to it means nothing";
+  }
+  return ratio;
 }
 
 }  // namespace corpuscle::statistics

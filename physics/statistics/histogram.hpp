@@ -36,6 +36,9 @@ struct Moments {
 /// Of all values, errors from stretches of time (`blocks` as above).
 Moments moments(const SeriesMatrix& values, Eigen::Index blocks = 0, const Resampling& resampling = {});
 
+/// RMS of the fluctuations over the mean's magnitude, as RMS(sigma)/<sigma>. Not converged where the mean is smaller than twice its error.
+Estimate relative_fluctuation(const SeriesMatrix& values, Eigen::Index blocks = 0, const Resampling& resampling = {});
+
 struct CoreAndTails {
   Fit core;                ///< "height", "centre", "width": height exp[-(x-centre)^2/(2 width^2)] where |x - mean| < core_reach standard deviations
   Fit lower, upper;        ///< "height", "decay": height exp(-|x - x0|/decay), x0 = mean -+ tail_start standard deviations, beyond x0

@@ -54,7 +54,7 @@ Estimate known(double value, double error) { return {.value = value, .error = er
 TEST_CASE("diffusion: three ways agree with an Ornstein-Uhlenbeck process within error bars that cover it", "[statistics]") {
   Normal normal(1);
   const double a = std::exp(-interval), truth = interval * (1 + a) / (1 - a) / 2;
-  Coverage slope, integral, formula;
+  Coverage slope, integral, formula, relaxation;
   int refused = 0;
   const int repetitions = 200;
   for (int i = 0; i < repetitions; ++i) {
@@ -66,12 +66,14 @@ TEST_CASE("diffusion: three ways agree with an Ornstein-Uhlenbeck process within
     const auto stretched = diffusion_from_stretched_exponential(thinned(vacf, 4), 2.5, resampling);
     slope.add(from_msd.value, from_msd.error, truth);
     integral.add(from_vacf.value, from_vacf.error, truth * (1 - std::exp(-6.0)));
+    const auto time = relaxation_time(vacf, 0, resampling);
+    relaxation.add(time.value, time.error, truth * (1 - std::exp(-6.0)));
     formula.add(stretched.diffusion.value, stretched.diffusion.error, 1);
     refused += (from_vacf.converged ? 0 : 1) + (stretched.diffusion.converged ? 0 : 1);
     CHECK(from_vacf.correlation_time == Approx(1).epsilon(0.5));
     CHECK(std::abs(from_msd.value - from_vacf.value) < 4 * std::hypot(from_msd.error, from_vacf.error));
   }
-  for (const auto& coverage : {slope, integral, formula}) check(coverage);
+  for (const auto& coverage : {slope, integral, formula, relaxation}) check(coverage);
   CHECK(refused < repetitions / 50);
 }
 
@@ -104,6 +106,7 @@ TEST_CASE("diffusion: integral of the velocity correlation and the Gamma formula
     const auto integral = diffusion_from_vacf(exact(t, c), 20);
     CAPTURE(b);
     CHECK(integral.converged);
+    CHECK(relaxation_time(exact(t, c), 20).value == Approx(integral.value / 3));
     CHECK(integral.value == Approx(truth).epsilon(3e-3));  // b = 0.8: the cusp at 0 costs the trapezoidal rule most
     const auto noise = exact(t, c);
     BlockedCurve noisy = noise;
@@ -118,7 +121,7 @@ TEST_CASE("diffusion: integral of the velocity correlation and the Gamma formula
   const VectorXd slow = (-t.array() / 10).exp();
   CHECK(says(diffusion_from_vacf(exact(t, slow)).reason, "cut short"));
   CHECK(says(diffusion_from_vacf(exact(t, (-t.array() * 200).exp().matrix())).reason, "too far apart"));
-  CHECK(says(diffusion_from_vacf(exact(t, 0 * t)).reason, "don't fluctuate"));
+  CHECK(says(diffusion_from_vacf(exact(t, 0 * t)).reason, "nothing fluctuates"));
   // Negative overshoot: C = exp(-t) (1 - t) has no diffusion at all.
   const auto caged = diffusion_from_vacf(exact(t, ((-t.array()).exp() * (1 - t.array())).matrix()), 20);
   CHECK(caged.value == Approx(0).margin(1e-4));

@@ -56,7 +56,7 @@ TEST_CASE("histogram: counts, range, gaps and blocks", "[statistics]") {
 
 TEST_CASE("probability density and moments: coverage with correlated Gaussian samples", "[statistics]") {
   Normal normal(1);
-  Coverage centre, flank, variance, skewness, kurtosis, mean;
+  Coverage centre, flank, variance, skewness, kurtosis, mean, ratio;
   for (int i = 0; i < 800; ++i) {
     const MatrixXd x = 3 + 2 * ar1_matrix(0.7, 1500, 4, normal).array();
     const Resampling resampling{80, static_cast<std::uint64_t>(i)};
@@ -69,12 +69,14 @@ TEST_CASE("probability density and moments: coverage with correlated Gaussian sa
     centre.add(density.value[16], density.error[16], truth(16));
     flank.add(density.value[10], density.error[10], truth(10));
     const auto m = moments(x, 0, resampling);
+    const auto relative = relative_fluctuation(x, 0, resampling);
+    ratio.add(relative.value, relative.error, 2.0 / 3);
     mean.add(m.mean.value, m.mean.error, 3);
     variance.add(m.variance.value, m.variance.error, 4);
     skewness.add(m.skewness.value, m.skewness.error, 0);
     kurtosis.add(m.excess_kurtosis.value, m.excess_kurtosis.error, 0);
   }
-  for (const auto& coverage : {centre, flank, mean, variance, skewness, kurtosis}) check(coverage);
+  for (const auto& coverage : {centre, flank, mean, variance, skewness, kurtosis, ratio}) check(coverage);
 }
 
 TEST_CASE("moments: known distributions and degenerate samples", "[statistics]") {
@@ -99,6 +101,9 @@ TEST_CASE("moments: known distributions and degenerate samples", "[statistics]")
   CHECK(constant.variance.value == Approx(0).margin(1e-15));
   CHECK(std::isnan(constant.skewness.value));
   CHECK(says(constant.excess_kurtosis.reason, "no shape"));
+  CHECK(relative_fluctuation(MatrixXd::Constant(100, 2, 0.3)).value == Approx(0).margin(1e-12));
+  CHECK(says(relative_fluctuation(MatrixXd::Zero(100, 2)).reason, "cannot be computed"));
+  CHECK(says(relative_fluctuation(laplace).reason, "zero"));
   CHECK(says(moments(MatrixXd(10, 0)).mean.reason, "no valid"));
   CHECK(says(moments(MatrixXd::Random(3, 2)).variance.reason, "too few"));
 }
