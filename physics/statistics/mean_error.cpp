@@ -1,73 +1,103 @@
 #include "physics/statistics/mean_error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "physics/statistics/autocorrelation_time.hpp"
 
 namespace corpuscle::statistics {
 namespace {
 
-constexpr double window_factor = 5;       // Sokal's c: the window is the first lag W >= c tau(W)
-constexpr double smallest_time = 0.05;    // anti-correlated series: don't claim an error much below the data's scatter
 constexpr double times_to_trust = 20;
-
-// Autocovariance at one lag, unbiased in the number of pairs.
-double autocovariance(const std::vector<double>& deviation, std::size_t lag) {
-  double sum = 0;
-  for (std::size_t i = 0; i + lag < deviation.size(); ++i) sum += deviation[i] * deviation[i + lag];
-  return sum / static_cast<double>(deviation.size() - lag);
-}
+constexpr int blocks_to_trust = 8;
 
 }  // namespace
 
 MeanError mean_error(std::span<const double> series) {
-  std::vector<double> values;
-  values.reserve(series.size());
-  std::copy_if(series.begin(), series.end(), std::back_inserter(values), [](double x) { return !std::isnan(x); });
+  const AutocorrelationTime tau = autocorrelation_time(series);
+  MeanError result{.mean = tau.mean, .error = not_a_number, .correlation_time = not_a_number, .effective_samples = tau.valid_samples, .converged = false};
+  if (tau.valid_samples < 2) return result;
+  result.error = std::sqrt(tau.mean_variance);
+  result.correlation_time = tau.time;
+  if (!tau.constant) result.effective_samples = tau.variance / tau.mean_variance;
+  result.converged = tau.window_closed && tau.valid_samples >= times_to_trust * tau.time;
+  return result;
+}
 
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  MeanError result{.mean = nan, .error = nan, .correlation_time = nan, .effective_samples = 0, .converged = false};
-  if (values.empty()) return result;
-  const auto n = static_cast<double>(values.size());
-  double sum = 0;
-  for (const double x : values) sum += x;
-  result.mean = sum / n;
-  result.effective_samples = n;
-  if (values.size() < 2) return result;
-
-  for (double& x : values) x -= result.mean;
-  const double variance = autocovariance(values, 0);
-  // Rounding of a constant series isn't noise: its correlations would be meaningless.
-  const double rounding = 1e-14 * std::abs(result.mean);
-  if (variance <= rounding * rounding) {
-    result.error = 0;
-    result.correlation_time = 0.5;
-    result.converged = n >= times_to_trust * result.correlation_time;
-    return result;
+Estimate mean_estimate(std::span<const double> series, double time_step) {
+  const MeanError mean = mean_error(series);
+  Estimate result{.value = mean.mean,
+                  .error = mean.error,
+                  .correlation_time = mean.correlation_time * time_step,
+                  .effective_samples = mean.effective_samples,
+                  .converged = mean.converged,
+                  .reason = {}};
+  if (mean.converged) return result;
+  if (std::isnan(mean.mean)) {
+    result.reason = "the series has no valid sample";
+  } else if (std::isnan(mean.error)) {
+    result.reason = "one sample has no error";
+  } else {
+    result.reason = fmt::format("the series ({} samples) is shorter than {:g} of its correlation times ({:.3g} samples)", series.size(), times_to_trust,
+                                mean.correlation_time);
   }
+  return result;
+}
 
-  // tau(W) = 1/2 + sum_{t=1}^{W} rho(t), stopped at the smallest W >= 5 tau(W). Lags beyond n/2 carry no information.
-  const std::size_t last_lag = std::max<std::size_t>(values.size() / 2, 1);
-  double covariance_sum = variance;  // Gamma(0) + 2 sum Gamma(t) = 2 tau Gamma(0)
-  std::size_t window = 0;
-  bool closed = false;
-  for (std::size_t lag = 1; lag <= last_lag && lag < values.size(); ++lag) {
-    covariance_sum += 2 * autocovariance(values, lag);
-    window = lag;
-    if (static_cast<double>(lag) >= window_factor * covariance_sum / (2 * variance)) {
-      closed = true;
-      break;
+Estimate block_mean(std::span<const double> series, int blocks, double time_step) {
+  Estimate result;
+  std::vector<double> means, weights;
+  const std::size_t count = std::min<std::size_t>(static_cast<std::size_t>(std::max(blocks, 1)), series.size());
+  double sum = 0, samples = 0, squares = 0;
+  for (std::size_t b = 0; b < count; ++b) {
+    const std::size_t from = b * series.size() / count, to = (b + 1) * series.size() / count;
+    double block = 0, valid = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      if (std::isnan(series[i])) continue;
+      block += series[i];
+      squares += series[i] * series[i];
+      valid += 1;
+    }
+    sum += block;
+    samples += valid;
+    if (valid > 0) {
+      means.push_back(block / valid);
+      weights.push_back(valid);
     }
   }
-  // Deviations are taken from the sample mean, not the true one, which lowers each Gamma(t) by (2 tau Gamma(0))/n (Wolff 2004).
-  const double correction = std::max(covariance_sum, 0.0) / n;
-  covariance_sum += correction * (1 + 2 * static_cast<double>(window));
-  const double unbiased_variance = variance + correction;
-  result.correlation_time = std::clamp(covariance_sum / (2 * unbiased_variance), smallest_time, n / 2);
-  result.error = std::sqrt(2 * result.correlation_time * unbiased_variance / n);
-  result.effective_samples = n / (2 * result.correlation_time);
-  result.converged = closed && n >= times_to_trust * result.correlation_time;
+  if (samples == 0) {
+    result.reason = "the series has no valid sample";
+    return result;
+  }
+  result.value = sum / samples;
+  const auto n = static_cast<double>(means.size());
+  result.effective_samples = n;
+  if (means.size() < 2) {
+    result.reason = "one block has no error";
+    return result;
+  }
+  double scatter = 0, neighbours = 0;
+  for (std::size_t b = 0; b < means.size(); ++b) {
+    const double share = weights[b] * n / samples;
+    means[b] = share * (means[b] - result.value);
+    scatter += means[b] * means[b];
+    if (b > 0) neighbours += means[b] * means[b - 1];
+  }
+  result.error = std::sqrt(scatter / (n * (n - 1)));
+  double variance = 0;
+  for (const double x : series) variance += std::isnan(x) ? 0 : (x - result.value) * (x - result.value);
+  variance /= samples;
+  if (variance > 1e-28 * squares / samples) result.correlation_time = result.error * result.error * samples / (2 * variance) * time_step;
+  if (means.size() < blocks_to_trust) {
+    result.reason = fmt::format("{} blocks are too few for an error (at least {})", means.size(), blocks_to_trust);
+  } else if (scatter > 0 && neighbours / scatter > 2 / std::sqrt(n)) {  // 2 sigma of the correlation of n independent blocks
+    result.reason = "neighbouring blocks are correlated: the series is too short for its correlation time or drifts";
+  } else {
+    result.converged = true;
+  }
   return result;
 }
 

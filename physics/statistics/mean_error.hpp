@@ -2,6 +2,8 @@
 #pragma once
 #include <span>
 
+#include "physics/statistics/estimate.hpp"
+
 namespace corpuscle::statistics {
 
 struct MeanError {
@@ -14,5 +16,13 @@ struct MeanError {
 
 /// Mean and error by the integrated autocorrelation time with Sokal's automatic window (c = 5), NaN samples ignored.
 MeanError mean_error(std::span<const double> series);
+
+/// The same with the reason when it isn't converged; correlation time in units of `time_step`.
+Estimate mean_estimate(std::span<const double> series, double time_step = 1);
+
+/// Mean and error from the scatter of the means of `blocks` equal stretches of the series (Flyvbjerg & Petersen 1989), an estimate that knows nothing
+/// of the shape of the correlation. The correlation time, in units of `time_step`, is the one that explains the error. Not converged below 8 blocks or
+/// when neighbouring blocks are still correlated.
+Estimate block_mean(std::span<const double> series, int blocks = 20, double time_step = 1);
 
 }  // namespace corpuscle::statistics
