@@ -67,7 +67,8 @@ Estimate integral_of(const BlockedCurve& correlation, double to, bool normalised
   }
   if (c[1] < smallest_step * c[0]) doubt(result, "the samples lie too far apart for an integral: the correlation falls below 60 % within one interval");
   if (correlation.x[last] > correlation.trusted_until()) {
-    doubt(result, fmt::format("the error is too small: the integral reaches {:.3g}, over half of a block, {:.3g}", correlation.x[last], correlation.trusted_until()));
+    doubt(result, fmt::format("the error is too small: the integral reaches {:.3g}, over half of a block, {:.3g}", correlation.x[last],
+                              correlation.trusted_until()));
   }
   if (!(result.value > 0)) doubt(result, "the integral of the correlation is not positive");
   return result;

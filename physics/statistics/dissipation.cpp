@@ -52,7 +52,9 @@ Fit fit_gap_radius(const std::vector<DissipationState>& states, double from) {
     y.push_back(gap.value);
     error.push_back(gap.error);
   }
-  const auto map = [](const std::vector<double>& v) { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()))); };
+  const auto map = [](const std::vector<double>& v) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
+  };
   FitData data{.x = map(x), .y = map(y), .error = map(error)};
   if (!std::all_of(error.begin(), error.end(), [](double e) { return e > 0; })) data.error.resize(0);
   return fit_proportional(data);

@@ -42,7 +42,7 @@ Estimate relative_fluctuation(const SeriesMatrix& values, Eigen::Index blocks = 
 struct CoreAndTails {
   Fit core;                ///< "height", "centre", "width": height exp[-(x-centre)^2/(2 width^2)] where |x - mean| < core_reach standard deviations
   Fit lower, upper;        ///< "height", "decay": height exp(-|x - x0|/decay), x0 = mean -+ tail_start standard deviations, beyond x0
-  double gaussian_tail = not_a_number;  ///< samples that the core's Gaussian would have beyond both tail starts, per sample found there: far below 1 for wide tails
+  double gaussian_tail = not_a_number;  ///< samples of the core's Gaussian beyond both tail starts per sample found there: far below 1 for wide tails
 };
 
 /// Gaussian core and exponential tails of a density. Counts in bins are Poisson numbers whose likelihood is maximised (Baker & Cousins, Nucl. Instrum.

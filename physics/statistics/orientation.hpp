@@ -14,7 +14,7 @@ struct AxisSeries {
 struct Orientation {
   Eigen::Matrix3d tensor, tensor_error;  ///< <n n>, trace 1, a third each when isotropic
   Eigen::Vector3d director;              ///< eigenvector of the largest eigenvalue, its sign free
-  Estimate order;                        ///< largest eigenvalue S of (3 <n n> - 1)/2: 1 aligned, 0 isotropic (a finite sample gives about 1/sqrt(samples) there)
+  Estimate order;                        ///< largest eigenvalue of (3 <n n> - 1)/2: 1 aligned, 0 isotropic (about 1/sqrt(samples) for a finite sample)
 };
 
 /// Orientation tensor and nematic order (de Gennes & Prost 1993, ch. 2). Errors from stretches of time, `blocks` of them.

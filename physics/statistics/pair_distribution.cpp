@@ -31,7 +31,9 @@ PairDistribution::PairDistribution(const PairOptions& options) : options_(option
   if (refusal_.empty() && !(options.reach > 0 && options.reach <= largest)) {
     refusal_ = fmt::format("pairs up to a distance of {:g} cannot be counted: more than 0 and at most half of each periodic size, {:g}", options.reach, largest);
   }
-  if (refusal_.empty() && (options.bins < 1 || options.contact_distance > options.reach)) refusal_ = "g(r) needs a bin and a reach beyond the contact distance";
+  if (refusal_.empty() && (options.bins < 1 || options.contact_distance > options.reach)) {
+    refusal_ = "g(r) needs a bin and a reach beyond the contact distance";
+  }
   if (refusal_.empty() && !options.periodic[2] && 2 * options.wall_layer >= options.size[2]) {
     refusal_ = fmt::format("no bulk region is left between two layers of {:g} in a gap of {:g}", options.wall_layer, options.size[2]);
   }

@@ -15,7 +15,8 @@ using Eigen::VectorXd;
 
 bool fits(const SeriesMatrix& heights, const SeriesMatrix& quantity, const ProfileOptions& options, BlockedCurve& curve) {
   if (heights.rows() != quantity.rows() || heights.cols() != quantity.cols()) {
-    curve.reason = fmt::format("heights and quantity have different shapes: {} x {} and {} x {}", heights.rows(), heights.cols(), quantity.rows(), quantity.cols());
+    curve.reason = fmt::format("heights and quantity have different shapes: {} x {} and {} x {}", heights.rows(), heights.cols(), quantity.rows(),
+                               quantity.cols());
   } else if (heights.size() == 0) {
     curve.reason = "there is no sample";
   } else if (!(options.high > options.low) || options.bins < 1) {

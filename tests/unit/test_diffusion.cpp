@@ -47,7 +47,9 @@ BlockedCurve exact(const VectorXd& x, const VectorXd& y) {
   return curve;
 }
 
-Estimate known(double value, double error) { return {.value = value, .error = error, .correlation_time = 0, .effective_samples = 100, .converged = true, .reason = {}}; }
+Estimate known(double value, double error) {
+  return {.value = value, .error = error, .correlation_time = 0, .effective_samples = 100, .converged = true, .reason = {}};
+}
 
 }  // namespace
 
