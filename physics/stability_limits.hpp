@@ -1,5 +1,6 @@
 // What is stable: the measured limits that scenes are checked against (docs/stability.md; measured by `corpuscle stability`).
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,14 @@ namespace corpuscle {
 /// Fraction of a measured limit up to which settings are chosen by default and accepted silently; up to the limit they are accepted with a warning, beyond it refused.
 inline constexpr double stability_margin = 0.8;
 
-/// Largest stable moduli over the viscosity eta_0, each alone (bending: kappa_B/edge).
+/// Largest stable moduli over the viscosity eta_0, as shares of a sum (bending: kappa_B/edge).
 struct StiffnessLimits {
   double shear = 0;     ///< kappa_S/eta_0
   double dilation = 0;  ///< kappa_alpha/eta_0
   double bending = 0;   ///< kappa_B/(eta_0 edge), edge in lattice units
   double contact = 0;   ///< kappa_int/eta_0
+  /// kappa_S/eta_0 and kappa_alpha/eta_0 by themselves, for meshes of several edges: where shares of a sum would allow more (chebyshev). 0: they don't.
+  std::array<double, 5> shear_alone{}, dilation_alone{};
 };
 /// @param phi_effective effective volume fraction: crowded cells are less stable
 StiffnessLimits stiffness_limits(const AccuracySpec& accuracy, double phi_effective);
@@ -28,7 +31,8 @@ inline constexpr double finest_edge = 0.4, coarsest_edge = 2.5;
 
 /// kappa_alpha of a Skalak membrane with the same resistance to dilation: neo-Hookean K = 3 G, Skalak K = (1 + 2 C) G.
 double dilation_stiffness(StrainLawKind law, double shear, double area_dilation);
-/// How much of the stable range a membrane uses: shear/limit + dilation/limit + bending/(limit edge), moduli over eta_0. Stable up to 1: the largest eigenvalue of a sum of
+/// How much of the stable range a membrane uses: shear/limit + dilation/limit + bending/(limit edge), moduli over eta_0; or shear or dilation over its limit
+/// alone, if that is more. Stable up to 1: the largest eigenvalue of a sum of
 /// stiffness matrices is at most the sum of theirs.
 double stiffness_load(const StiffnessLimits& limits, double edge, double shear, double dilation, double bending);
 

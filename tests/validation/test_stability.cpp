@@ -1,4 +1,6 @@
 // Measured stability limits are real: the scheme is quiet well below them and breaks well above.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "physics/packing.hpp"
@@ -70,33 +72,61 @@ TEST_CASE("In dense flow half of the stiffness limit stays quiet, twice of it do
   CHECK_FALSE(verdict(2).stable);
 }
 
+namespace {
+
+/// One neo-Hookean capsule in shear, so stiff that its membrane limits the shear rate.
+Problem stiff_capsule(double capillary_number) {
+  Problem problem;
+  problem.box.size = {6, 6, 6};
+  problem.accuracy.radius = 5;
+  problem.accuracy.mach_max = 0.3;
+  problem.flow.capillary_number = capillary_number;
+  problem.flow.reynolds_number_max = 0.5;
+  problem.contact.enabled = false;
+  auto& cell = problem.cells.emplace_back();
+  cell.name = "capsule";
+  cell.shape = ShapeKind::sphere;
+  cell.count = 1;
+  cell.position = {3, 3, 3};
+  cell.membrane.law = StrainLawKind::neo_hookean;
+  cell.membrane.bending = 0;
+  return problem;
+}
+
+/// Runs with the stiffness that the program chooses.
+void check_chosen_stiffness(const Problem& problem, const std::string& conditions) {
+  const LatticeParameters lattice = to_lattice(problem);
+  INFO(conditions << ", kappa_S/eta_0 = " << lattice.cells[0].moduli.shear / lattice.viscosity);
+  CHECK(lattice.limits.front().name == "membrane stability");
+  const auto types = make_cell_types(problem, lattice);
+  const auto suspension = make_suspension(problem, lattice, types, place_cells(problem, lattice, types));
+  for (int i = 0; i < 1500; ++i) suspension->step();
+  CHECK_NOTHROW(suspension->check());
+}
+
+}  // namespace
+
 TEST_CASE("The stiffest capsule that is chosen at a large relaxation time is stable", "[stability]") {
   // With TRT the odd moments are hardly damped at large tau: limits over eta_0 fall faster than with BGK (perf/stable_stiffness.py).
   for (const auto collision : {CollisionKind::bgk, CollisionKind::trt})
     for (const int points : {2, 3, 4}) {
-      Problem problem;
-      problem.box.size = {6, 6, 6};
-      problem.accuracy.radius = 5;
+      Problem problem = stiff_capsule(0.0125);
       problem.accuracy.relaxation_time = 3;
       problem.accuracy.collision = collision;
       problem.accuracy.delta_kernel = points;
-      problem.accuracy.mach_max = 0.3;
-      problem.flow.capillary_number = 0.0125;
-      problem.flow.reynolds_number_max = 0.5;
-      problem.contact.enabled = false;
-      auto& cell = problem.cells.emplace_back();
-      cell.name = "capsule";
-      cell.shape = ShapeKind::sphere;
-      cell.count = 1;
-      cell.position = {3, 3, 3};
-      cell.membrane.law = StrainLawKind::neo_hookean;
-      cell.membrane.bending = 0;
-      const LatticeParameters lattice = to_lattice(problem);
-      INFO((collision == CollisionKind::trt ? "TRT, " : "BGK, ") << points << " points, kappa_S/eta_0 = " << lattice.cells[0].moduli.shear / lattice.viscosity);
-      CHECK(lattice.limits.front().name == "membrane stability");
-      const auto types = make_cell_types(problem, lattice);
-      const auto suspension = make_suspension(problem, lattice, types, place_cells(problem, lattice, types));
-      for (int i = 0; i < 1500; ++i) suspension->step();
-      CHECK_NOTHROW(suspension->check());
+      check_chosen_stiffness(problem, fmt::format("{}, {} points", collision == CollisionKind::trt ? "TRT" : "BGK", points));
+    }
+}
+
+TEST_CASE("The stiffest capsule that is chosen for chebyshev steps is stable with fine and with coarse meshes", "[stability]") {
+  for (const int subdivision : {2, 3, 5, 10})  // edges of 2.5, 1.7, 1 and 0.5
+    for (const int points : {2, 3, 4}) {
+      Problem problem = stiff_capsule(1e-4);
+      problem.box.size = {4, 4, 4};
+      problem.cells[0].position = {2, 2, 2};
+      problem.accuracy.vertex_update = VertexUpdate::chebyshev;
+      problem.accuracy.subdivision = subdivision;
+      problem.accuracy.delta_kernel = points;
+      check_chosen_stiffness(problem, fmt::format("subdivision {}, {} points", subdivision, points));
     }
 }
