@@ -63,7 +63,7 @@ void read_at(int file, std::uint64_t address, std::size_t size, unsigned char* t
     size -= static_cast<std::size_t>(got);
     address += static_cast<std::uint64_t>(got);
   }
-  std::memset(to, 0, size);
+  if (size > 0) std::memset(to, 0, size);  // an empty journal has no bytes to point to
 }
 
 std::uint64_t size_of(int file) {
