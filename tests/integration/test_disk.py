@@ -92,7 +92,7 @@ with tempfile.TemporaryDirectory() as temporary:
     process = subprocess.Popen([program, "run", str(work / "scene.toml"), "--output", str(work / "gone")],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     deadline = time.time() + 60
-    while not (work / "gone" / "cells.vtkhdf").exists() and time.time() < deadline:
+    while not (work / "gone" / "checkpoint-a.h5").exists() and time.time() < deadline:  # from here on the run has begun
         time.sleep(0.05)
     time.sleep(0.5)
     shutil.move(work / "gone", work / "moved")  # one step, unlike the removal of file after file
