@@ -7,6 +7,7 @@
 #include "app/machine.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/checkpoint.hpp"
 #include "io/scene.hpp"
 
 namespace corpuscle::app {
@@ -31,7 +32,7 @@ std::vector<VtkCellType> surfaces_of(const std::vector<CellType>& types) {
 
 /// A file that was changed from outside (or lost with its disk) must not be continued with a gap.
 void check_count(const fs::path& path, std::size_t found, std::int64_t step, std::int64_t every, const char* what) {
-  const auto expected = static_cast<std::size_t>((step + every - 1) / every);
+  const auto expected = static_cast<std::size_t>(written_before(step, every));
   if (found != expected)
     throw OutputError(fmt::format("{} holds {} {} from before step {} of the checkpoint, but {} were written: "
                                   "it was changed or damaged since; restore it, or start again with corpuscle run",

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "core/error.hpp"
+#include "io/checkpoint.hpp"
 
 namespace corpuscle::app {
 namespace fs = std::filesystem;
@@ -11,7 +12,7 @@ namespace fs = std::filesystem;
 bool is_result(const std::string& name) {
   for (const std::string known : {"run.h5", "summary.json", "scene.toml", "packing.h5", "cells.vtkhdf", "fluid.vtkhdf", "broken.vtkhdf", "broken_fluid.vtkhdf"})
     if (name == known || name == known + ".journal" || name == known + ".tmp") return true;
-  return name.starts_with("checkpoint-") || name == "checkpoint.tmp";
+  return name.starts_with("checkpoint-") || name == CheckpointStore::temporary_name;
 }
 
 ReplacedResults::ReplacedResults(const fs::path& directory, const fs::path& packing_in_use) : directory_(directory), aside_(directory / ".replaced") {

@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Refuses directories that hold results or cannot be written; creates nothing.
-void check_output(const fs::path& directory, bool overwrite, bool locked_by_this_run = false) {
+/// Refuses directories that cannot be written, or that another run writes to; creates nothing.
+void require_writable(const fs::path& directory) {
   std::error_code error;
   fs::path existing = fs::absolute(directory);
   while (!existing.empty() && !fs::exists(existing, error)) existing = existing.parent_path();
@@ -31,8 +31,13 @@ void check_output(const fs::path& directory, bool overwrite, bool locked_by_this
     throw InputError(fmt::format("--output {}: {} is not a directory; choose another place.", directory.string(), existing.string()));
   if (access(existing.c_str(), W_OK | X_OK) != 0)
     throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
-  if (!locked_by_this_run) require_unlocked(directory);
+  require_unlocked(directory);
+}
+
+/// Refuses directories that hold results, unless they are to be replaced.
+void require_no_results(const fs::path& directory, bool overwrite) {
   if (overwrite) return;
+  std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
     if (is_result(name) && name != "packing.h5" && name != "scene.toml")  // these two may well be what the run starts from
@@ -76,7 +81,8 @@ int run(const RunOptions& options) {
   const WallTime wall_time(options.wall_time.empty() ? 0 : parse_wall_time(options.wall_time));
   const Problem problem = read_scene(options.scene, options.overrides);
   const LatticeParameters lattice = to_lattice(problem);
-  check_output(directory, options.overwrite);
+  require_writable(directory);
+  require_no_results(directory, options.overwrite);
   print_warnings(lattice.warnings);
   const auto types = make_cell_types(problem, lattice);
   Packing packing = packing_layout(lattice);
@@ -107,7 +113,7 @@ int run(const RunOptions& options) {
   std::optional<Outputs> created;
   try {
     lock.emplace(directory);
-    check_output(directory, options.overwrite, lock.has_value());  // another run may have come and gone while this one was packing
+    require_no_results(directory, options.overwrite);  // another run may have come and gone while this one was packing
     replaced.emplace(directory, problem.run.packing);
     std::ofstream scene(directory / "scene.toml");
     if (!(scene << to_toml(problem) << std::flush)) throw OutputError((directory / "scene.toml").string() + " can't be written (is the disk full?)");

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -21,7 +20,7 @@ namespace corpuscle::app {
 
 Checkpoints::Checkpoints(const std::filesystem::path& directory, const Problem& problem, const LatticeParameters& lattice)
     : store_(directory), every_(60 * problem.output.checkpoint_every), every_steps_(problem.output.checkpoint_steps.value_or(0)),
-      every_strain_(problem.output.checkpoint_strain ? std::max<std::int64_t>(1, std::llround(*problem.output.checkpoint_strain * lattice.steps_per_strain)) : 0) {
+      every_strain_(lattice.checkpoint_every) {
   contents_.scene = to_toml(problem);
   contents_.version = version_string();
   contents_.git_revision = git_revision();

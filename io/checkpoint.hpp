@@ -28,6 +28,9 @@ struct Checkpoint {
 /// All lattice parameters that a step depends on: a run goes on with the same ones only.
 std::vector<double> lattice_numbers(const LatticeParameters& lattice);
 
+/// How many samples or snapshots a run has written before `step` when it writes one every so many steps, from step 0 on.
+inline std::int64_t written_before(std::int64_t step, std::int64_t every) { return (step + every - 1) / every; }
+
 /// A checkpoint that has been opened; populations are read when they are asked for.
 class CheckpointFile {
  public:

@@ -22,7 +22,7 @@ std::string misfit(const Checkpoint& checkpoint, const RunFacts& run, bool with_
   if (!finite(state.positions) || !finite(state.velocities)) return "a position or velocity is not a finite number";
   if (run.readable && with_series) {
     const auto found = std::count_if(run.steps.begin(), run.steps.end(), [&](std::int64_t step) { return step < state.step; });
-    const auto expected = (state.step + run.series_every - 1) / run.series_every;
+    const auto expected = written_before(state.step, run.series_every);
     if (found != expected) return fmt::format("run.h5 holds {} samples from before its step {}, but {} were written", found, state.step, expected);
   }
   return {};

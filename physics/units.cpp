@@ -224,6 +224,8 @@ void set_duration(const Problem& problem, LatticeParameters& lattice) {
   lattice.steps = problem.run.steps ? *problem.run.steps : duration ? steps("run.duration", *duration, lattice.membrane_time) : steps("run.strain", problem.run.strain, unit);
   lattice.series_every = steps("output.series_every", problem.output.series_every, unit);
   lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every, unit) : 0;
+  // Absent at rest, where there is no strain.
+  if (problem.output.checkpoint_strain) lattice.checkpoint_every = steps("output.checkpoint_strain", *problem.output.checkpoint_strain, unit);
   lattice.guard_every = problem.guards.every;
 }
 

@@ -84,6 +84,7 @@ struct LatticeParameters {
   double steps_per_strain = 0;         ///< 0 at rest
   std::int64_t series_every = 0;       ///< steps
   std::int64_t snapshot_every = 0;     ///< steps; 0: none
+  std::int64_t checkpoint_every = 0;   ///< steps, from the cadence by strain; 0: none
   std::int64_t guard_every = 100;      ///< steps
   std::vector<CellTypeLattice> cells;
   std::vector<ShearRateLimit> limits;  ///< all limits, the deciding (smallest) one first

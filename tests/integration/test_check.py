@@ -13,8 +13,9 @@ import time
 
 import h5py
 
+from expectations import expect, finish
+
 program = sys.argv[1]
-failures = []
 
 SCENE = """
 [box]
@@ -32,12 +33,6 @@ series_every = 0.002
 snapshot_every = 0.01
 fluid = true
 """
-
-
-def expect(condition, message):
-    if not condition:
-        failures.append(message)
-        print("FAILED", message)
 
 
 def check(folder, *options):
@@ -199,6 +194,5 @@ with tempfile.TemporaryDirectory() as temporary:
     expect(third.returncode == 0, "the lock of a killed run is none: " + third.stderr)
     expect(problems(folder)["problems"] == [], "the replaced results are whole")
 
-if failures:
-    sys.exit(f"{len(failures)} checks failed")
+finish()
 print("every damage was found, nothing crashed")

@@ -13,8 +13,9 @@ import time
 
 import h5py
 
+from expectations import expect, finish
+
 program = sys.argv[1]
-failures = []
 
 SCENE = """
 [box]
@@ -32,12 +33,6 @@ series_every = 0.002
 snapshot_every = 0.01
 fluid = true
 """
-
-
-def expect(condition, message):
-    if not condition:
-        failures.append(message)
-        print("FAILED", message)
 
 
 @contextlib.contextmanager
@@ -132,6 +127,5 @@ with tempfile.TemporaryDirectory() as temporary:
         answer = run(work / "locked" / "results")
         expect(answer.returncode == 2 and "permission" in answer.stderr, "read-only directory: " + answer.stderr)
 
-if failures:
-    sys.exit(f"{len(failures)} checks failed")
+finish()
 print("every fault of the disk ended in order")

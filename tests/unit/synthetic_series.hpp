@@ -1,11 +1,13 @@
-// Random series whose statistics are known exactly.
+// Random series whose statistics are known exactly, and what the tests of the statistics ask of estimates from them.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "core/random.hpp"
+#include "tests/catch.hpp"
 
 namespace corpuscle::test {
 
@@ -63,5 +65,15 @@ struct Coverage {
   double share() const { return static_cast<double>(hits) / tries; }
   double error() const { return std::sqrt(share() * (1 - share()) / tries); }
 };
+
+/// Error bars of one standard deviation: 68 % of normal errors lie within, 60 to 75 % are accepted.
+inline void check(const Coverage& coverage) {
+  CAPTURE(coverage.share(), coverage.error());
+  CHECK(coverage.share() > 0.60);
+  CHECK(coverage.share() < 0.75);
+}
+
+/// Whether the reason of an estimate contains these words.
+inline bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
 
 }  // namespace corpuscle::test

@@ -14,12 +14,6 @@
 using namespace corpuscle::statistics;
 using namespace corpuscle::test;
 
-namespace {
-
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
-}  // namespace
-
 TEST_CASE("autocorrelation_time: AR(1) within its own error", "[statistics]") {
   Normal normal(1);
   for (const double a : {0.0, 0.5, 0.9, 0.97}) {

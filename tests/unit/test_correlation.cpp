@@ -16,8 +16,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
 /// Definition, origins being multiples of `every`.
 template <class Term>
 double direct(const MatrixXd& a, const MatrixXd& b, Index lag, Index every, const Term& term) {

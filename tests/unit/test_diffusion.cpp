@@ -17,14 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
-void check(const Coverage& coverage) {
-  CAPTURE(coverage.share(), coverage.error());
-  CHECK(coverage.share() > 0.60);
-  CHECK(coverage.share() < 0.75);
-}
-
 constexpr double interval = 0.1;  // in correlation times
 
 /// Positions after steps of `interval`: the rectangle rule, of which the trapezoidal sum over C(t) is the exact D: dt (1+a)/(1-a)/2.

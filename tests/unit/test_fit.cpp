@@ -14,19 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
 FitData noisy(const VectorXd& x, const VectorXd& truth, const VectorXd& error, Normal& normal) {
   FitData data{.x = x, .y = truth, .error = error};
   for (Index i = 0; i < x.size(); ++i) data.y[i] += error[i] * normal();
   return data;
-}
-
-/// As within 60 to 75 %, the binomial error of 300 repetitions being 2.7 %.
-void check(const Coverage& coverage) {
-  CAPTURE(coverage.share(), coverage.error());
-  CHECK(coverage.share() > 0.60);
-  CHECK(coverage.share() < 0.75);
 }
 
 }  // namespace

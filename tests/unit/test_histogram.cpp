@@ -14,14 +14,6 @@ using Eigen::MatrixXd;
 
 namespace {
 
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
-void check(const Coverage& coverage) {
-  CAPTURE(coverage.share(), coverage.error());
-  CHECK(coverage.share() > 0.60);
-  CHECK(coverage.share() < 0.75);
-}
-
 /// Gaussian of width 1 within |x| < c, exponential beyond with the same value and slope (decay 1/c): Huber's least favourable density, by inversion of
 /// the normal variables' distribution function so that correlations in time stay.
 double huber(double gaussian, double c) {

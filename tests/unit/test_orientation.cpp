@@ -17,8 +17,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
 struct Axes {
   MatrixXd x, y, z;
   Axes(Index times, Index cells) : x(MatrixXd::Zero(times, cells)), y(x), z(x) {}

@@ -14,8 +14,6 @@ using Eigen::Index;
 
 namespace {
 
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
 std::vector<double> gas(int n, double x, double y, double z, Normal& random) {
   std::vector<double> centres;
   for (int i = 0; i < n; ++i) centres.insert(centres.end(), {x * random.uniform(), y * random.uniform(), z * random.uniform()});

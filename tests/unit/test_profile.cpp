@@ -12,12 +12,6 @@ using namespace corpuscle::test;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-namespace {
-
-bool says(const std::string& reason, const std::string& words) { return reason.find(words) != std::string::npos; }
-
-}  // namespace
-
 TEST_CASE("profile: mean flow, density and fluctuations of cells in a channel", "[statistics]") {
   Normal normal(1);
   const Index times = 800, cells = 100;

@@ -9,25 +9,13 @@
 #include "physics/memory.hpp"
 #include "physics/packing.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/running.hpp"
 
 using namespace corpuscle;
+using corpuscle::test::Running;
+using corpuscle::test::start;
 
 namespace {
-
-struct Running {
-  Problem problem;
-  LatticeParameters lattice;
-  std::unique_ptr<Suspension> suspension;
-};
-
-Running start(const std::string& scene) {
-  Running r;
-  r.problem = parse_scene(scene, "test.toml");
-  r.lattice = to_lattice(r.problem);
-  const auto types = make_cell_types(r.problem, r.lattice);
-  r.suspension = make_suspension(r.problem, r.lattice, types, place_cells(r.problem, r.lattice, types));
-  return r;
-}
 
 const std::string fluid_only = "[box]\nsize = [2, 2, 4]\n[accuracy]\nradius = 5\n[run]\nstrain = 1\n";
 

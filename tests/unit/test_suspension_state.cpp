@@ -5,25 +5,13 @@
 #include "physics/packing.hpp"
 #include "physics/suspension.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/running.hpp"
 
 using namespace corpuscle;
+using corpuscle::test::Running;
+using corpuscle::test::start;
 
 namespace {
-
-struct Running {
-  Problem problem;
-  LatticeParameters lattice;
-  std::unique_ptr<Suspension> suspension;
-};
-
-Running start(const std::string& scene) {
-  Running r;
-  r.problem = parse_scene(scene, "test.toml");
-  r.lattice = to_lattice(r.problem);
-  const auto types = make_cell_types(r.problem, r.lattice);
-  r.suspension = make_suspension(r.problem, r.lattice, types, place_cells(r.problem, r.lattice, types));
-  return r;
-}
 
 /// Takes the state, loses all else, and goes on in a new suspension.
 Running go_on_elsewhere(const std::string& scene, const Suspension& from) {
