@@ -113,7 +113,8 @@ struct CellGuard {
     }
     if (near_begin.extent(0) > 0) look_for_depth(s, v);
   }
-  /// Below the surface near the vertex of another cell that is closest to v. A thin cell may turn its far side to v: then all vertices near v are asked.
+  /// Below the surface near the vertex of another cell that is closest to v. That may mislead: a thin cell may turn its far side to v, and a sharp edge triangles
+  /// whose corners are far from v. So before a cell counts as pierced, all of its triangles are asked.
   KOKKOS_FUNCTION void look_for_depth(CellState& s, const int v) const {
     int nearest = -1;
     double least = limits.contact_range * limits.contact_range;
@@ -124,12 +125,19 @@ struct CellGuard {
     if (nearest < 0) return;
     SignedDistance distance;
     look_around(distance, v, nearest);
-    if (distance.depth() > limits.penetration) {
-      const int other = cell_of_vertex(nearest);
-      for (int i = near_begin(v); i < near_begin(v + 1); ++i)
-        if (near(i) != nearest && cell_of_vertex(near(i)) == other) look_around(distance, v, near(i));
-    }
-    if (distance.depth() > s.depth) s.depth = distance.depth(), s.deepest = v, s.pierced_cell = cell_of_vertex(nearest);
+    double depth = distance.depth();
+    if (depth > limits.penetration) depth = depth_in_cell(v, nearest);
+    if (depth > s.depth) s.depth = depth, s.deepest = v, s.pierced_cell = cell_of_vertex(nearest);
+  }
+  /// Of vertex v in the image of a cell whose vertex w is close to it.
+  KOKKOS_FUNCTION double depth_in_cell(const int v, const int w) const {
+    const PairVector pair(box, x, v, w);
+    const Vec3<double> to_w{-pair.d[0], -pair.d[1], -pair.d[2]};
+    const int cell = cell_of_vertex(w), base = tables.first_vertex(cell), type = tables.type_of_cell(cell);
+    const auto from_v = [&](const int face, const int corner) { return to_w + between(w, base + tables.faces(face, corner)); };
+    DepthInSurface surface;
+    for (int face = tables.type_face(type); face < tables.type_face(type + 1); ++face) surface.look_at(from_v(face, 0), from_v(face, 1), from_v(face, 2));
+    return surface.depth();
   }
   /// The triangles around vertex w, seen from v.
   KOKKOS_FUNCTION void look_around(SignedDistance& distance, const int v, const int w) const {

@@ -1,5 +1,7 @@
 // How far a point lies from a triangulated surface, and on which side: the sign is that of the pseudonormal at the closest point.
 // Baerentzen, Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 243 (2005); closest point of a triangle: Ericson, Real-Time Collision Detection, 5.1.5.
+// And, slower but never ambiguous, by all triangles of a closed surface: the side is that of the winding number, Van Oosterom & Strackee,
+// IEEE Trans. Biomed. Eng. 30, 125 (1983).
 #pragma once
 #include "kernels/vec3.hpp"
 
@@ -48,6 +50,50 @@ struct SignedDistance {
   KOKKOS_FUNCTION double depth() const {
     const double distance = Kokkos::sqrt(squared);
     return dot(away, normal) < 0 ? distance : -distance;
+  }
+};
+
+/// Half the solid angle of the triangle (a, b, c), outward, seen from the origin: positive where it shows its inner side. In (-pi, pi].
+KOKKOS_INLINE_FUNCTION double half_solid_angle(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
+  const double la = Kokkos::sqrt(dot(a, a)), lb = Kokkos::sqrt(dot(b, b)), lc = Kokkos::sqrt(dot(c, c));
+  return Kokkos::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+/// Squared distance of the origin from the triangle (a, b, c), edges and corners included. A triangle without area counts as its edges.
+KOKKOS_INLINE_FUNCTION double triangle_distance_squared(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
+  const Vec3<double> normal = cross(b - a, c - a);
+  const double size = dot(normal, normal);
+  // The foot of the perpendicular is inside when it is on the inner side of all three edges.
+  if (size > 0 && dot(cross(a, b), normal) >= 0 && dot(cross(b, c), normal) >= 0 && dot(cross(c, a), normal) >= 0) {
+    const double height = dot(a, normal);
+    return height * height / size;
+  }
+  double least = 1e300;
+  const Vec3<double> corners[4] = {a, b, c, a};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3<double> edge = corners[k + 1] - corners[k];
+    const double length = dot(edge, edge), along = -dot(corners[k], edge);
+    const double t = along <= 0 || !(length > 0) ? 0.0 : along >= length ? 1.0 : along / length;
+    const Vec3<double> closest = corners[k] + t * edge;
+    const double squared = dot(closest, closest);
+    if (squared < least) least = squared;
+  }
+  return least;
+}
+
+/// Looks at all triangles of a closed surface, given relative to the point.
+struct DepthInSurface {
+  double half_angles = 0, squared = 1e300;
+
+  KOKKOS_FUNCTION void look_at(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
+    half_angles += half_solid_angle(a, b, c);
+    const double found = triangle_distance_squared(a, b, c);
+    if (found < squared) squared = found;
+  }
+  /// Below the surface; negative outside.
+  KOKKOS_FUNCTION double depth() const {
+    const double distance = Kokkos::sqrt(squared);
+    return half_angles > Kokkos::numbers::pi ? distance : -distance;  // 2 pi inside, 0 outside
   }
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/signed_distance.hpp"
+
 namespace corpuscle {
 namespace {
 
@@ -92,12 +94,11 @@ bool InsideTest::contains(const Vector3& p) const {
 double winding_number(const CellView& cell, const Vector3& point) {
   double sum = 0;
   for (const auto& face : *cell.faces) {
-    std::array<Vector3, 3> d;
-    for (int c = 0; c < 3; ++c) d[c] = Eigen::Map<const Vector3>(cell.positions + 3 * face[c]) - point;
-    const double a = d[0].norm(), b = d[1].norm(), c = d[2].norm();
-    const double numerator = d[0].dot(d[1].cross(d[2]));
-    const double denominator = a * b * c + d[0].dot(d[1]) * c + d[1].dot(d[2]) * a + d[2].dot(d[0]) * b;
-    sum += std::atan2(numerator, denominator);  // half the solid angle
+    const auto corner = [&](int c) {
+      const Vector3 d = Eigen::Map<const Vector3>(cell.positions + 3 * face[c]) - point;
+      return Vec3<double>{d.x(), d.y(), d.z()};
+    };
+    sum += half_solid_angle(corner(0), corner(1), corner(2));
   }
   return sum / (2 * std::numbers::pi);
 }

@@ -240,6 +240,9 @@ TEST_CASE("The signed distance of points near a surface: that of the nearest tri
     CHECK(std::abs(distance.depth()) <= nearest * (1 + 1e-9));
     const bool winds = winding_number(view, p) > 0.5;
     CHECK((distance.depth() > 0) == winds);
+    DepthInSurface all;
+    for (const auto& face : mesh.faces) all.look_at(vec(mesh.vertices[face[0]] - p), vec(mesh.vertices[face[1]] - p), vec(mesh.vertices[face[2]] - p));
+    CHECK(all.depth() == Approx(distance.depth()).epsilon(1e-9).margin(1e-9));
     inside += winds;
   }
   CHECK(inside > 200);
