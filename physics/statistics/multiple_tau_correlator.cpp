@@ -106,6 +106,47 @@ BlockedCurve MultipleTauCorrelator::result() const {
   return curve;
 }
 
+// samples, stretch, then per level: received, history, pending, sums, counts.
+std::vector<double> MultipleTauCorrelator::save() const {
+  std::vector<double> saved{static_cast<double>(samples_), static_cast<double>(stretch_)};
+  const auto append = [&](const double* values, std::size_t size) { saved.insert(saved.end(), values, values + size); };
+  for (const Level& level : levels_) {
+    saved.push_back(static_cast<double>(level.received));
+    append(level.history.data(), level.history.size());
+    append(level.pending.data(), level.pending.size());
+    for (const Eigen::MatrixXd* sums : {&level.sums, &level.counts}) append(sums->data(), static_cast<std::size_t>(sums->size()));
+  }
+  return saved;
+}
+
+bool MultipleTauCorrelator::restore(std::span<const double> saved) {
+  const auto is_count = [](double value) { return value >= 0 && value < 9e15 && value == std::floor(value); };
+  const std::size_t history = static_cast<std::size_t>(options_.channels) * particles_, pending = options_.average ? particles_ : 0;
+  const auto sums = static_cast<std::size_t>(options_.channels * 2 * options_.blocks), width = 1 + history + pending + 2 * sums;
+  if (saved.size() < 2 || (saved.size() - 2) % width != 0 || !is_count(saved[0]) || !is_count(saved[1]) || saved[1] < 1) return false;
+  const std::size_t count = (saved.size() - 2) / width;
+  if (count > static_cast<std::size_t>(options_.levels) || saved[0] > saved[1] * 2 * static_cast<double>(options_.blocks)) return false;
+  std::vector<Level> levels(count);
+  auto from = saved.begin() + 2;
+  for (Level& level : levels) {
+    if (!is_count(*from)) return false;
+    level.received = static_cast<std::int64_t>(*from++);
+    const auto take = [&](std::size_t size) { return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(size)); };
+    level.history = take(history);
+    from += static_cast<std::ptrdiff_t>(history);
+    level.pending = take(pending);
+    from += static_cast<std::ptrdiff_t>(pending);
+    for (Eigen::MatrixXd* matrix : {&level.sums, &level.counts}) {
+      *matrix = Eigen::Map<const Eigen::MatrixXd>(&*from, options_.channels, 2 * options_.blocks);
+      from += static_cast<std::ptrdiff_t>(sums);
+    }
+  }
+  samples_ = static_cast<std::int64_t>(saved[0]);
+  stretch_ = static_cast<std::int64_t>(saved[1]);
+  levels_ = std::move(levels);
+  return true;
+}
+
 std::size_t MultipleTauCorrelator::bytes() const {
   std::size_t doubles = 0;
   for (const Level& level : levels_) {

@@ -31,6 +31,11 @@ class MultipleTauCorrelator {
   /// Lags that have been seen, in units of the time step's, with the sums per stretch.
   BlockedCurve result() const;
 
+  /// What has been added, as plain numbers for a checkpoint: a correlator that goes on from them has the same results, bit for bit.
+  std::vector<double> save() const;
+  /// Goes on from `save` of a correlator of the same particles and options. @returns false, and changes nothing, when the numbers can't come from there.
+  bool restore(std::span<const double> saved);
+
   std::int64_t samples() const { return samples_; }
   std::size_t bytes() const;
 

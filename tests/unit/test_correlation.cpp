@@ -221,6 +221,24 @@ TEST_CASE("multiple-tau correlator: averaging, errors and memory", "[statistics]
     const double width = curve.x[i] / 8;
     CHECK(std::abs(with.value[i] - std::exp(-curve.x[i])) < 4 * with.error[i] + width * width / 12 * std::exp(-curve.x[i]));
   }
+  for (const bool average : {false, true}) {  // one that was saved in the middle, where levels are half full, and went on
+    const MultipleTauOptions options{.channels = 8, .levels = 5, .average = average, .blocks = 4};
+    MultipleTauCorrelator whole(Quantity::autocorrelation, 1, 0.05, options), first(Quantity::autocorrelation, 1, 0.05, options), second = first;
+    for (Index i = 0; i < 1000; ++i) whole.add({&x(i, 0), 1});
+    for (Index i = 0; i < 531; ++i) first.add({&x(i, 0), 1});
+    auto saved = first.save();
+    REQUIRE(second.restore(saved));
+    for (Index i = 531; i < 1000; ++i) second.add({&x(i, 0), 1});
+    CHECK((second.result().sums.array() == whole.result().sums.array()).all());
+    CHECK((second.result().counts.array() == whole.result().counts.array()).all());
+    MultipleTauCorrelator other(Quantity::autocorrelation, 2, 0.05, options);
+    CHECK(!other.restore(saved));
+    saved.pop_back();
+    CHECK(!second.restore(saved));
+    saved = {-1, 1};
+    CHECK(!second.restore(saved));
+    CHECK(second.samples() == 1000);
+  }
   MultipleTauCorrelator empty(Quantity::autocorrelation, 0, 1);
   CHECK(says(empty.result().reason, "no particle"));
   MultipleTauCorrelator young(Quantity::autocorrelation, 2, 1);
