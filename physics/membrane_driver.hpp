@@ -3,9 +3,9 @@
 // scratch memory, where triangles and edges add to their vertices: every triangle and edge is computed once (a gather by vertices computes a triangle
 // three times and an edge four times).
 #pragma once
-#include <Kokkos_SIMD.hpp>
 #include <type_traits>
 
+#include "core/simd.hpp"
 #include "kernels/membrane_force.hpp"
 #include "physics/units.hpp"
 
@@ -22,8 +22,6 @@ struct AreaVolume {
 };
 
 namespace detail {
-template <class Real>
-using HostPack = Kokkos::Experimental::native_simd<Real>;
 template <class Real, bool host>
 struct PackOf {
   using type = Real;

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/random.hpp"
+#include "core/simd.hpp"
+#include "core/types.hpp"
 #include "kernels/vec3.hpp"
 #include "tests/catch.hpp"
 
@@ -161,4 +163,16 @@ TEST_CASE("Uniaxial tension: transverse stretch of both laws", "[membrane]") {
       CHECK(slope(sk, l1, std::sqrt((1 + C * l1 * l1) / (1 + C * std::pow(l1, 4)))) == Approx(0).margin(1e-6));
     }
   }
+}
+
+TEST_CASE("Membranes of several cells are computed at once where the processor has wide registers", "[membrane]") {
+#if defined(__AVX512F__) || defined(__AVX2__) || defined(__ARM_NEON)
+  // However Kokkos was configured: with a single lane every suspension would be slower by far, and nothing else would show it.
+  if (runs_on_host) {
+    CHECK(int(HostPack<double>::size()) > 1);
+    CHECK(int(HostPack<float>::size()) > 1);
+  }
+#else
+  SUCCEED("this processor has none that Kokkos knows");
+#endif
 }
