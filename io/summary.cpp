@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "core/error.hpp"
+#include "io/text_file.hpp"
 #include "physics/statistics/ellipsoid.hpp"
 
 namespace corpuscle {
@@ -187,21 +184,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["bytes_peak"] = summary.bytes_peak;
   for (const auto& part : summary.profile) json["profile"].push_back({{"operator", part.name}, {"calls", part.calls}, {"seconds", part.seconds}});
 
-  auto temporary = path;
-  temporary += ".tmp";
-  const auto fail = [&](const std::string& reason) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw OutputError(fmt::format("{}: writing the summary failed: {}", path.string(), reason));
-  };
-  errno = 0;
-  std::ofstream file(temporary);
-  file << json.dump(2) << '\n';
-  file.close();
-  if (!file) fail(errno != 0 ? std::strerror(errno) : "unknown reason");
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) fail(error.message());
+  write_text_file(path, json.dump(2) + "\n", "the summary");
 }
 
 }  // namespace corpuscle
