@@ -1,5 +1,6 @@
 // The subcommands of `corpuscle`. Each returns the exit code (core/error.hpp) or throws.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,16 @@ struct CheckOptions {
 };
 /// Exit code 0: all is well, 1: problems were found, 2: not the results of a run.
 int check(const CheckOptions& options);
+
+struct AnalyseOptions {
+  std::string directory;
+  double wall_layer = 4;                ///< radii
+  std::string mean_flow = "measured";   ///< or "uniform"
+  std::optional<double> discard;        ///< strain; none: found from the series
+  std::optional<double> longest_lag;    ///< strain; none: a quarter of what is left
+  std::string output;                   ///< .json; empty: analysis.json in the directory
+};
+int analyse(const AnalyseOptions& options);
 
 struct StabilityOptions {
   std::string output = "results/stability";  ///< directory of stability.json; a search that was interrupted goes on there

@@ -16,6 +16,7 @@ Start here:
   corpuscle plan scenes/quickstart.toml                      what would run, how long, how much memory
   corpuscle run  scenes/quickstart.toml --output results/a   run it; Ctrl-C stops cleanly, all data are kept
   corpuscle resume results/a                                 go on where it was stopped or killed
+  corpuscle analyse results/a                                viscosity, fluctuations, diffusion, shapes ... with errors
   corpuscle run  scenes/quickstart.toml --output results/b --set flow.capillary_number=0.02 --set run.strain=5
   corpuscle sweep flow_curve.toml --output results/curve     a matrix of scenes (docs/sweep.md))";
 
@@ -93,6 +94,17 @@ int main(int argc, char** argv) {
   check->add_flag("--json", check_options.json, "Machine-readable output");
   check->add_flag("--recover", check_options.recover, "First finish, or take back, what a killed run was writing; without it check changes nothing");
 
+  app::AnalyseOptions analyse_options;
+  auto* analyse = program.add_subcommand("analyse", "Compute all observables of a finished or running run, with errors, into analysis.json and analysis.md (docs/analysis.md)");
+  analyse->add_option("DIR", analyse_options.directory, "Directory that run wrote")->required();
+  analyse->add_option("--wall-layer", analyse_options.wall_layer, "Thickness of the layers at both walls that are no bulk")->type_name("RADII")->capture_default_str();
+  analyse->add_option("--mean-flow", analyse_options.mean_flow, "Flow that velocity fluctuations along x are about: measured in layers of z, or uniform shear")
+      ->check(CLI::IsMember({"measured", "uniform"}))
+      ->capture_default_str();
+  analyse->add_option("--discard", analyse_options.discard, "Leave the start-up up to this strain out (default: found from the series)")->type_name("STRAIN");
+  analyse->add_option("--longest-lag", analyse_options.longest_lag, "Longest lag of time correlations (default: a quarter of what is left)")->type_name("STRAIN");
+  analyse->add_option("-o,--output", analyse_options.output, "File of the results (default: analysis.json in DIR); the page goes beside it, with .md")->type_name("FILE");
+
   app::StabilityOptions stability_options;
   auto* stability = program.add_subcommand("stability", "Search for the stability limits that plan and run use (docs/stability.md); an interrupted search goes on where it stopped");
   stability->add_option("-o,--output", stability_options.output, "Directory of the results, stability.json (default: results/stability)")->type_name("DIR");
@@ -108,6 +120,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (*check) return app::check(check_options);
+    if (*analyse) return app::analyse(analyse_options);
     if (*stability) return app::stability(stability_options);
     if (*resume) return app::resume(resume_options);
     if (*sweep) return app::sweep(sweep_options);

@@ -129,13 +129,15 @@ CoreAndTails fit_core_and_tails(const Histogram& histogram, double core_reach, d
         tail_names, resampling);
   };
   const Index low = edge_at(mean - tail_start * deviation), high = edge_at(mean + tail_start * deviation);
-  result.lower = tail(0, low, histogram.edges[low], -1);
-  result.upper = tail(high, bins, histogram.edges[high], 1);
+  result.lower_start = histogram.edges[low];
+  result.upper_start = histogram.edges[high];
+  result.lower = tail(0, low, result.lower_start, -1);
+  result.upper = tail(high, bins, result.upper_start, 1);
 
   const double found = all.head(low).sum() + all.tail(bins - high).sum();
   if (result.core.converged && found > 0) {
     const double centre = result.core.parameters[1], width = result.core.parameters[2], scale = 1 / (std::numbers::sqrt2 * width);
-    const double both = std::erfc((centre - histogram.edges[low]) * scale) + std::erfc((histogram.edges[high] - centre) * scale);
+    const double both = std::erfc((centre - result.lower_start) * scale) + std::erfc((result.upper_start - centre) * scale);
     const double expected = result.core.parameters[0] * std::sqrt(std::numbers::pi / 2) * width * both * histogram.samples.sum();
     result.gaussian_tail = expected / found;
   }

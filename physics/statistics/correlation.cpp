@@ -152,14 +152,16 @@ VectorXd deviations(const VectorXd& x, MeanRemoval removal, double overall) {
   return without_gaps((x.array() - mean).matrix());
 }
 
+BlockedCurve of_different_shapes(const SeriesMatrix& a, const SeriesMatrix& b) {
+  BlockedCurve curve;
+  curve.reason = fmt::format("the series have different shapes: {} x {} and {} x {}", a.rows(), a.cols(), b.rows(), b.cols());
+  return curve;
+}
+
 }  // namespace
 
 BlockedCurve cross_correlation(const SeriesMatrix& a, const SeriesMatrix& b, double time_step, const CorrelationOptions& options) {
-  if (a.rows() != b.rows() || a.cols() != b.cols()) {
-    BlockedCurve curve;
-    curve.reason = fmt::format("the series have different shapes: {} x {} and {} x {}", a.rows(), a.cols(), b.rows(), b.cols());
-    return curve;
-  }
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return of_different_shapes(a, b);
   const bool remove = options.removal == MeanRemoval::overall;
   const double mean_a = remove ? mean_of_valid(a) : 0, mean_b = remove ? mean_of_valid(b) : 0;
   return correlate(layout_of(a.rows(), a.cols(), options), options, time_step, [&](Index p) {
@@ -172,15 +174,21 @@ BlockedCurve autocorrelation(const SeriesMatrix& series, double time_step, const
   return cross_correlation(series, series, time_step, options);
 }
 
-BlockedCurve mean_square_displacement(const SeriesMatrix& positions, double time_step, const CorrelationOptions& options) {
+BlockedCurve mean_square_displacement(const SeriesMatrix& positions, const SeriesMatrix& origins, double time_step, const CorrelationOptions& options) {
+  if (positions.rows() != origins.rows() || positions.cols() != origins.cols()) return of_different_shapes(positions, origins);
   BlockedCurve msd = correlate(layout_of(positions.rows(), positions.cols(), options), options, time_step, [&](Index p) {
     const VectorXd x = positions.col(p);
     const VectorXd valid = validity(x), y = deviations(x, MeanRemoval::particle, 0), squares = y.cwiseAbs2();
-    return Signals{{squares, valid, (-2 * y).eval()}, {valid, squares, y}, valid, valid};
+    const VectorXd from = valid.cwiseProduct(validity(origins.col(p)));
+    return Signals{{from.cwiseProduct(squares), from, (-2 * from.cwiseProduct(y)).eval()}, {valid, squares, y}, from, valid};
   });
   if (msd.points() > 0) msd.sums.row(0).setZero();
   msd.sums = msd.sums.cwiseMax(0);
   return msd;
+}
+
+BlockedCurve mean_square_displacement(const SeriesMatrix& positions, double time_step, const CorrelationOptions& options) {
+  return mean_square_displacement(positions, positions, time_step, options);
 }
 
 VectorXd local_exponent(const VectorXd& x, const VectorXd& y, double reach) {

@@ -36,6 +36,10 @@ BlockedCurve cross_correlation(const SeriesMatrix& a, const SeriesMatrix& b, dou
 /// particle's positions are taken relative to their mean; the rounding error is about 1e-15 times their mean square.
 BlockedCurve mean_square_displacement(const SeriesMatrix& positions, double time_step, const CorrelationOptions& options = {});
 
+/// The same over the origins s where `origins` isn't NaN only: of particles that are in a region at the beginning, wherever they are later. To ask that they
+/// are still there would leave the long displacements out.
+BlockedCurve mean_square_displacement(const SeriesMatrix& positions, const SeriesMatrix& origins, double time_step, const CorrelationOptions& options);
+
 /// d ln y/d ln x by a straight line through the points within a factor `reach` of each x > 0; NaN where fewer than 3 of them have y > 0.
 Eigen::VectorXd local_exponent(const Eigen::VectorXd& x, const Eigen::VectorXd& y, double reach = 1.5);
 

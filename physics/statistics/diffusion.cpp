@@ -30,12 +30,6 @@ double trapezoid(const VectorXd& x, const VectorXd& y, Index last) {
   return sum;
 }
 
-void doubt(Estimate& estimate, std::string reason) {
-  if (!estimate.converged) return;
-  estimate.converged = false;
-  estimate.reason = std::move(reason);
-}
-
 Estimate integral_of(const BlockedCurve& correlation, double to, bool normalised, const Resampling& resampling) {
   Estimate result;
   result.reason = correlation.reason;

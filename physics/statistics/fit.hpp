@@ -10,14 +10,14 @@
 namespace corpuscle::statistics {
 
 struct Fit {
-  std::vector<std::string> names;
-  Eigen::VectorXd parameters, errors;  ///< NaN where the fit failed
-  Eigen::MatrixXd covariance;
+  std::vector<std::string> names{};
+  Eigen::VectorXd parameters{}, errors{};  ///< NaN where the fit failed
+  Eigen::MatrixXd covariance{};
   double chi2 = not_a_number;          ///< sum of the squared residuals over the points' errors (relative residuals where no errors were given)
   int degrees_of_freedom = 0;
   double probability = not_a_number;   ///< of a larger chi2 if the model holds and the points' errors are independent; NaN without errors
   bool converged = false;              ///< the minimum was found and the data determine every parameter
-  std::string reason;
+  std::string reason{};
 
   /// One parameter as an estimate; NaN with a reason for a name that the model lacks.
   Estimate parameter(const std::string& name) const;

@@ -42,6 +42,7 @@ Estimate relative_fluctuation(const SeriesMatrix& values, Eigen::Index blocks = 
 struct CoreAndTails {
   Fit core;                ///< "height", "centre", "width": height exp[-(x-centre)^2/(2 width^2)] where |x - mean| < core_reach standard deviations
   Fit lower, upper;        ///< "height", "decay": height exp(-|x - x0|/decay), x0 = mean -+ tail_start standard deviations, beyond x0
+  double lower_start = not_a_number, upper_start = not_a_number;  ///< both x0, on edges of bins
   double gaussian_tail = not_a_number;  ///< samples of the core's Gaussian beyond both tail starts per sample found there: far below 1 for wide tails
 };
 

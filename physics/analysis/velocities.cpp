@@ -1,0 +1,171 @@
+// Velocity fluctuations of the cells about the mean flow: profiles, variances, densities, correlations, and what is integrated from these.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/analysis/groups.hpp"
+#include "physics/statistics/diffusion.hpp"
+#include "physics/statistics/histogram.hpp"
+
+namespace corpuscle::analysis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using statistics::BlockedCurve;
+using statistics::Curve;
+using statistics::Estimate;
+
+constexpr double fit_until = 1;  // strain: a stretched exponential describes the first decay only
+
+/// Velocities along x minus the uniform shear flow, and their mean in layers of z: the rest of the mean flow, which changes slowly, so that layers of
+/// finite thickness take nothing of the shear for a fluctuation.
+struct FlowProfile {
+  MatrixXd about_uniform;  // [times][cells]
+  BlockedCurve rest;
+  double uniform_rate = 0;
+};
+
+FlowProfile flow_of(const SteadyState& state) {
+  FlowProfile flow;
+  flow.uniform_rate = state.record.flow == FlowOf::shear ? state.record.shear_rate : 0;
+  flow.about_uniform = statistics::fluctuations(state.heights, state.component(CellQuantity::velocity, 0), flow.uniform_rate, state.height() / 2);
+  const auto blocks = state.blocks(SteadyState::mean_of_cells(flow.about_uniform.cwiseAbs2()));
+  flow.rest = statistics::profile(state.heights, flow.about_uniform, layers_of(state, blocks));
+  return flow;
+}
+
+// Slope of the least-squares line through the profile between `low` and `high`.
+double slope_within(const VectorXd& x, const VectorXd& y, double low, double high) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (!(x[i] >= low && x[i] <= high) || std::isnan(y[i])) continue;
+    n += 1, sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
+  }
+  return n < 3 ? statistics::not_a_number : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+void add_mean_flow(const SteadyState& state, const FlowProfile& flow, Analysis& analysis) {
+  Curve& profile = analysis.curve("profile_velocity");
+  profile = profile_curve(state, flow.rest, state.velocity_unit());
+  profile.value.array() += flow.uniform_rate / state.record.shear_rate * (profile.x.array() - state.height() / (2 * state.record.radius));
+  Estimate& slope = analysis.estimate("shear_rate_bulk");
+  if (state.record.flow != FlowOf::shear) {
+    slope.reason = "in channel flow the shear rate changes across the bulk: see profile_velocity";
+    return;
+  }
+  const double rate = state.record.shear_rate;
+  slope = statistics::estimate_from(flow.rest, [&](const VectorXd& y) { return 1 + slope_within(flow.rest.x, y, state.bulk.low, state.bulk.high) / rate; });
+  if (flow.rest.reason.empty() && std::isnan(slope.value)) slope.reason = "fewer than three layers of the bulk hold cells";
+  // The slope moves with the cells' mean velocity weighted by their height.
+  const MatrixXd tilt = flow.about_uniform.cwiseProduct(((state.heights.array() - state.height() / 2) * state.inside.array()).matrix());
+  state.judge(slope, SteadyState::mean_of_cells(tilt));
+
+  const Estimate& viscosity = analysis.estimate("relative_viscosity");
+  if (std::isnan(viscosity.value)) {
+    analysis.estimate("relative_viscosity_local_rate").reason = viscosity.reason;
+    return;
+  }
+  Estimate& local = analysis.estimate("relative_viscosity_local_rate");
+  local = {.value = 1 + (viscosity.value - 1) / slope.value, .correlation_time = viscosity.correlation_time, .effective_samples = viscosity.effective_samples, .converged = true};
+  local.error = std::hypot(viscosity.error, (viscosity.value - 1) * slope.error / slope.value) / std::abs(slope.value);
+  if (!viscosity.converged) doubt(local, viscosity.reason);
+  if (!slope.converged) doubt(local, "shear rate of the bulk: " + slope.reason);
+}
+
+MatrixXd fluctuations_of(const SteadyState& state, const FlowProfile& flow, int axis) {
+  MatrixXd velocities;
+  if (axis > 0) velocities = state.component(CellQuantity::velocity, axis);
+  else if (state.options.mean_flow == MeanFlow::uniform) velocities = flow.about_uniform;
+  else velocities = statistics::fluctuations(state.heights, flow.about_uniform, statistics::with_errors(flow.rest, {}, {.resamples = 0}));
+  return velocities / state.velocity_unit();
+}
+
+void add_density(const MatrixXd& in_bulk, const std::string& name, Analysis& analysis) {
+  const auto histogram = statistics::histogram_around_mean(in_bulk);
+  analysis.curve("pdf_velocity_" + name) = statistics::probability_density(histogram);
+  const auto parts = statistics::fit_core_and_tails(histogram);
+  statistics::Fit& fit = analysis.fit("pdf_velocity_" + name + "_core_and_tails").fit;
+  std::vector<double> values, errors;
+  const auto add = [&](const std::string& parameter, double value, double error) {
+    fit.names.push_back(parameter);
+    values.push_back(value);
+    errors.push_back(error);
+  };
+  fit.converged = true;
+  fit.chi2 = 0;
+  for (const auto& [part, found] : {std::pair{"core", &parts.core}, {"lower", &parts.lower}, {"upper", &parts.upper}}) {
+    for (std::size_t i = 0; i < found->names.size(); ++i) {
+      const auto k = static_cast<Index>(i);
+      add(fmt::format("{}_{}", part, found->names[i]), found->parameters[k], found->errors[k]);
+    }
+    fit.chi2 += found->chi2;
+    fit.degrees_of_freedom += found->degrees_of_freedom;
+    if (!found->converged) doubt(fit, fmt::format("{}: {}", part, found->reason));
+  }
+  add("lower_start", parts.lower_start, statistics::not_a_number);
+  add("upper_start", parts.upper_start, statistics::not_a_number);
+  add("gaussian_tail", parts.gaussian_tail, statistics::not_a_number);
+  fit.parameters = Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+  fit.errors = Eigen::Map<const VectorXd>(errors.data(), static_cast<Index>(errors.size()));
+}
+
+void add_correlations(const SteadyState& state, const MatrixXd& all, const MatrixXd& in_bulk, const std::string& name, Analysis& analysis) {
+  // Cells that are in the bulk at the beginning of the lag, wherever they are later, as for the displacements.
+  const BlockedCurve vacf = statistics::cross_correlation(in_bulk, all, state.interval, state.lags());
+  const BlockedCurve few = statistics::thinned(vacf);
+  analysis.curve("vacf_" + name) = statistics::normalised(few);
+  analysis.estimate("relaxation_time_" + name) = statistics::relaxation_time(vacf);
+  if (name == "x") return;
+  analysis.estimate("diffusivity_vacf_" + name) = statistics::diffusion_from_vacf(vacf);
+  const double until = std::min(fit_until, vacf.trusted_until());
+  auto stretched = statistics::diffusion_from_stretched_exponential(few, until);
+  analysis.estimate("diffusivity_gamma_" + name) = stretched.diffusion;
+  NamedFit& fit = analysis.fit("vacf_" + name + "_stretched_exponential");
+  fit.fit = stretched.fit;
+  fit.from = 0;
+  fit.to = until;
+  if (vacf.points() == 0 || fit.fit.parameters.size() < 3) return;
+  // To lie on the normalised curve.
+  const double start = vacf.value()[0];
+  fit.fit.parameters[0] /= start;
+  fit.fit.errors[0] /= start;
+  fit.fit.covariance.row(0) /= start;
+  fit.fit.covariance.col(0) /= start;
+}
+
+}  // namespace
+
+void add_velocities(const SteadyState& state, Analysis& analysis) {
+  std::string missing = state.at_rest();
+  if (missing.empty()) missing = state.without_company();
+  if (!missing.empty()) {
+    if (analysis.estimate("relative_viscosity_local_rate").reason.starts_with("the shear rate of the bulk")) analysis.estimate("relative_viscosity_local_rate").reason = missing;
+    return analysis.refuse(Group::velocity, missing);
+  }
+  const FlowProfile flow = flow_of(state);
+  add_mean_flow(state, flow, analysis);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    const MatrixXd all = fluctuations_of(state, flow, axis), in_bulk = all.cwiseProduct(state.inside);
+    const auto moments = statistics::moments(in_bulk);
+    const auto squares = SteadyState::mean_of_cells(in_bulk.cwiseAbs2());
+    Estimate &variance = analysis.estimate("velocity_variance_" + name), &kurtosis = analysis.estimate("velocity_kurtosis_" + name);
+    variance = moments.variance;
+    kurtosis = moments.excess_kurtosis;
+    state.judge(variance, squares);
+    state.judge(kurtosis, squares);
+    if (axis > 0 && std::abs(moments.mean.value) > std::max(4 * moments.mean.error, 0.1 * std::sqrt(variance.value))) {
+      analysis.warnings.push_back(fmt::format("the cells of the bulk drift along {} with {:.3g} +- {:.1g} gamma_dot r: variances are about that mean, correlations and "
+                                              "displacements contain it", name, moments.mean.value, moments.mean.error));
+    }
+    analysis.curve("profile_variance_" + name) =
+        profile_curve(state, statistics::profile(state.heights, all.cwiseAbs2(), layers_of(state, state.blocks(squares))), 1);
+    add_density(in_bulk, name, analysis);
+    add_correlations(state, all, in_bulk, name, analysis);
+  }
+}
+
+}  // namespace corpuscle::analysis
