@@ -10,7 +10,7 @@ namespace corpuscle::app {
 namespace fs = std::filesystem;
 
 bool is_result(const std::string& name) {
-  for (const std::string known : {"run.h5", "summary.json", "scene.toml", "packing.h5", "cells.vtkhdf", "fluid.vtkhdf", "broken.vtkhdf", "broken_fluid.vtkhdf",
+  for (const std::string known : {"run.h5", "summary.json", "statistics.json", "scene.toml", "packing.h5", "cells.vtkhdf", "fluid.vtkhdf", "broken.vtkhdf", "broken_fluid.vtkhdf",
                                   "analysis.json", "analysis.md"})
     if (name == known || name == known + ".journal" || name == known + ".tmp") return true;
   return name.starts_with("checkpoint-") || name == CheckpointStore::temporary_name;

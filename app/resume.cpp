@@ -105,6 +105,8 @@ int resume(const ResumeOptions& options) {
   suspension->restore(from.state, [&](int direction) { return file.population(direction); });
   SeriesSummary series(lattice, problem.run.discard);
   series.restore(from.summary);
+  auto statistics = live_statistics(problem, lattice);
+  if (statistics) statistics->restore(from.statistics);
   Outputs outputs = Outputs::resume(directory, problem, lattice, types, from.state.step);
   Checkpoints checkpoints(directory, problem, lattice);
   checkpoints.go_on_after(file);
@@ -113,9 +115,9 @@ int resume(const ResumeOptions& options) {
     // From now on this is the scene, also when the run is killed before its next checkpoint.
     state_length(directory, problem, lattice, outputs);
     checkpoints.forget_last();
-    checkpoints.write(*suspension, outputs, series, from.state.step, from.seconds);
+    checkpoints.write(*suspension, outputs, series, statistics ? &*statistics : nullptr, from.state.step, from.seconds);
   }
-  return run_to_end({directory, lattice, *suspension, outputs, series, checkpoints, from.state.step, from.seconds, wall_time, options.profile});
+  return run_to_end({directory, lattice, *suspension, outputs, series, statistics ? &*statistics : nullptr, checkpoints, from.state.step, from.seconds, wall_time, options.profile});
 }
 
 }  // namespace corpuscle::app

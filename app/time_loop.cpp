@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
@@ -12,9 +13,12 @@
 #include "app/profile.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/analysis_file.hpp"
+#include "io/durable.hpp"
 #include "io/output_kept.hpp"
 #include "io/progress.hpp"
 #include "io/scene.hpp"
+#include "physics/analysis/live.hpp"
 
 namespace corpuscle::app {
 
@@ -40,7 +44,7 @@ bool Checkpoints::due(std::int64_t step) const {
   return every_.count() > 0 && Clock::now() - last_ >= every_;
 }
 
-void Checkpoints::write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, std::int64_t step, double seconds) {
+void Checkpoints::write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, const LiveStatistics* statistics, std::int64_t step, double seconds) {
   if (step == last_step_) return;
   const Kokkos::Profiling::ScopedRegion region("write_checkpoint");
   const auto begin = Clock::now();
@@ -48,15 +52,28 @@ void Checkpoints::write(Suspension& suspension, Outputs& outputs, const SeriesSu
   outputs.flush();
   contents_.state = suspension.state();
   contents_.summary = series.save();
+  if (statistics != nullptr) contents_.statistics = statistics->save();
   contents_.seconds = seconds;
   store_.write(contents_, [&](int direction) { return suspension.population(direction); });
   contents_.state = {};
+  contents_.statistics = {};
   last_step_ = step;
   last_ = Clock::now();
   seconds_to_write_ = std::chrono::duration<double>(last_ - begin).count();
 }
 
+std::optional<LiveStatistics> live_statistics(const Problem& problem, const LatticeParameters& lattice) {
+  if (!problem.output.statistics) return {};
+  return LiveStatistics(lattice, problem.box.walls, problem.run.discard);
+}
+
 namespace {
+
+void write_statistics(const ReadyRun& run) {
+  if (run.statistics == nullptr || run.statistics->samples() == 0) return;
+  const auto [record, found] = analysis::live_analysis(*run.statistics, run.lattice);
+  replace_file(run.directory / "statistics.json", analysis_json(record, found).dump(1) + "\n", "the statistics");
+}
 
 /// How the time loop ended.
 struct RunEnd {
@@ -117,11 +134,15 @@ RunEnd simulate(const ReadyRun& run) {
     run.suspension.check();
     run.outputs.series(sample);
     run.series.add(sample);
+    if (run.statistics != nullptr) run.statistics->add(sample);
     return sample;
   };
   RunEnd end;
   end.steps = run.first_step;
-  const auto checkpoint = [&] { run.checkpoints.write(run.suspension, run.outputs, run.series, end.steps, run.earlier_seconds + timer.seconds()); };
+  const auto checkpoint = [&] {
+    run.checkpoints.write(run.suspension, run.outputs, run.series, run.statistics, end.steps, run.earlier_seconds + timer.seconds());
+    write_statistics(run);
+  };
   Stop stop = Stop::none;
   try {
     if (run.first_step == 0) checkpoint();  // unless the start is broken, there is one
@@ -201,6 +222,7 @@ int run_to_end(const ReadyRun& run) {
     }
   };
   attempt([&] { run.outputs.flush(); });
+  attempt([&] { write_statistics(run); });
   if (profile) summary.profile = profile->times();
   attempt([&] { write_summary(run.directory / "summary.json", summary); });
   if (profile) std::cout << profile_table(summary.profile);

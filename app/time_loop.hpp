@@ -2,12 +2,14 @@
 #pragma once
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "app/outputs.hpp"
 #include "app/stop.hpp"
 #include "io/checkpoint.hpp"
 #include "io/summary.hpp"
+#include "physics/live_statistics.hpp"
 
 namespace corpuscle::app {
 
@@ -21,7 +23,7 @@ class Checkpoints {
   bool due(std::int64_t step) const;
   /// Writes one unless this step has one, after everything measured before it has been flushed. @throws SimulationError when the state is no good one,
   /// OutputError
-  void write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, std::int64_t step, double seconds);
+  void write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, const LiveStatistics* statistics, std::int64_t step, double seconds);
   /// Even if this step has one: the scene has changed.
   void forget_last() { last_step_ = -1; }
   /// How long the last one took.
@@ -38,6 +40,9 @@ class Checkpoints {
   double seconds_to_write_ = 0;
 };
 
+/// What the scene asks for beside series and trajectories; nothing without output.statistics.
+std::optional<LiveStatistics> live_statistics(const Problem& problem, const LatticeParameters& lattice);
+
 /// A run that is ready to go on, at a step that the suspension is at.
 struct ReadyRun {
   const std::filesystem::path& directory;
@@ -45,6 +50,7 @@ struct ReadyRun {
   Suspension& suspension;
   Outputs& outputs;
   SeriesSummary& series;
+  LiveStatistics* statistics;  ///< null: none asked for
   Checkpoints& checkpoints;
   std::int64_t first_step = 0;
   double earlier_seconds = 0;  ///< time of the steps before

@@ -76,6 +76,7 @@ void write_contents(const fs::path& path, const Checkpoint& checkpoint, std::int
   file.set_attribute("/", "nodes", std::span<const std::int64_t>(nodes));
   numbers("/lattice", checkpoint.lattice, {checkpoint.lattice.size()});
   numbers("/summary", checkpoint.summary, {checkpoint.summary.size()});
+  if (!checkpoint.statistics.empty()) numbers("/statistics", checkpoint.statistics, {checkpoint.statistics.size()});
   numbers("/vertices/positions", state.positions, {state.positions.size() / 3, 3});
   numbers("/vertices/velocities", state.velocities, {state.velocities.size() / 3, 3});
   numbers("/vertices/velocities_before", state.motion.before, {state.motion.before.size() / 3, 3});
@@ -174,6 +175,7 @@ CheckpointFile::CheckpointFile(const fs::path& path)
   for (std::size_t k = 0; k < 3; ++k) c.nodes[k] = static_cast<int>(in_range("nodes", nodes[k], 1, most_nodes_along));
   c.lattice = file_.read<double>("/lattice").values;
   c.summary = file_.read<double>("/summary").values;
+  if (file_.exists("/statistics")) c.statistics = file_.read<double>("/statistics").values;
   c.state.positions = file_.read<double>("/vertices/positions").values;
   c.state.velocities = file_.read<double>("/vertices/velocities").values;
   c.state.motion.before = file_.read<double>("/vertices/velocities_before").values;

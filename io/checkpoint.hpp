@@ -22,6 +22,7 @@ struct Checkpoint {
   std::array<int, 3> nodes{};
   double seconds = 0;            ///< time of the steps so far
   std::vector<double> summary;   ///< SeriesSummary::save
+  std::vector<double> statistics;  ///< LiveStatistics::save; empty without
   SuspensionState state;
 };
 

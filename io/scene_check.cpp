@@ -66,6 +66,8 @@ class Checker {
         fail(name, fmt::format("{} contradicts {} and {} together, which fix it already: remove one of the three", said(name), said("accuracy.shear_modulus"), said("accuracy.shear_rate")));
       }
     }
+    if (p_.output.statistics && (!shear || p_.cells.empty()))
+      fail("output.statistics", fmt::format("output.statistics = true {}: remove it", p_.cells.empty() ? "has no meaning without cells" : "takes flow.kind = \"shear\", the flow that fluctuations are measured against"));
     const bool fixed = has("accuracy.shear_modulus") && has("accuracy.shear_rate");
     if (has("si.shear_rate")) shear_rate();
     if (!rest && !p_.cells.empty() && !p_.flow.capillary_number && !has(names[1]) && !fixed) {

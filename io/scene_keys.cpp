@@ -109,6 +109,7 @@ const Key table[] = {
     {"output.snapshot_every", CORPUSCLE_FIELD(P.output.snapshot_every), between(0, many_steps), "", "1/γ̇; rest: that of `steps` or `duration`", "1; rest: 10th of the run",
      "Cadence of the snapshots; 0: none"},
     {"output.trajectories", CORPUSCLE_FIELD(P.output.trajectories), any, "", "", "", "Data of each cell at the cadence of the series"},
+    {"output.statistics", CORPUSCLE_FIELD(P.output.statistics), any, "", "", "", "statistics.json, at each checkpoint and at the end: fluctuations and diffusion of the cells, in memory that doesn't grow with the run; shear flow only"},
     {"output.fluid", CORPUSCLE_FIELD(P.output.fluid), any, "", "", "", "Velocity field at the cadence of the snapshots"},
     {"output.checkpoint_every", CORPUSCLE_FIELD(P.output.checkpoint_every), between(0, 1e6), "", "minutes of computing", "",
      "Time between checkpoints, from which `corpuscle resume` goes on; 0: only at the start, at the end and when the run is stopped"},

@@ -41,6 +41,8 @@ class LiveStatistics {
   void restore(std::span<const double> saved);
 
   std::size_t bytes() const;
+  std::int64_t samples() const { return samples_; }
+  double wall_layer() const { return layer_ / radius_; }  ///< radii; 0: no bulk is left, or there are no walls
 
  private:
   static constexpr int bins = 120, stretches = 32;

@@ -131,6 +131,7 @@ struct OutputSpec {
   double series_every = 0.05;
   double snapshot_every = 1.0;               ///< 0: none
   bool trajectories = true;                  ///< per-cell data at the cadence of the series
+  bool statistics = false;                   ///< fluctuations and diffusion of the cells while the run goes on (physics/live_statistics.hpp)
   bool fluid = false;                        ///< velocity field as ImageData at the cadence of the snapshots
   double checkpoint_every = 10;              ///< minutes of wall time between checkpoints; 0: none by time
   std::optional<std::int64_t> checkpoint_steps;  ///< and after this many time steps
