@@ -160,7 +160,7 @@ values = [0.1, 0.0003]
     out = sweep(path, check=1).stdout
     expect("start" not in out and "resum" not in out, f"an unstable run isn't tried again: {out}")
     expect(record(path)["runs"][1] == run, "and keeps its record")
-    process = subprocess.run([program, "resume", path.parent / "out/volume_drift0.0003", "--set", "guards.volume_drift=0.1"], capture_output=True, text=True)
+    process = subprocess.run([program, "resume", path.parent / "out/volume_drift0.0003", "--set", "guards.volume_drift=0.1", "--threads", "1"], capture_output=True, text=True)
     expect(process.returncode == 0, f"resumed by hand: {process.stderr}")
     sweep(path)
     expect(states(path)["volume_drift0.0003"] == "finished", "what was done by hand counts")
