@@ -74,6 +74,7 @@ int resume(const ResumeOptions& options) {
   const fs::path directory = options.directory;
   const WallTime wall_time(options.wall_time.empty() ? 0 : parse_wall_time(options.wall_time));
   const auto changes = changes_of(options);
+  listen_to_signals();  // a large checkpoint takes its time to be read
   std::vector<std::string> notes;
   std::optional<DirectoryLock> lock;
   if (std::error_code error; fs::is_directory(directory, error)) lock.emplace(directory);
@@ -93,7 +94,6 @@ int resume(const ResumeOptions& options) {
                                 options.precision));
   print_warnings(notes);
 
-  listen_to_signals();
   const KokkosSession session(options.threads);
   const auto types = make_cell_types(problem, lattice);
   std::int64_t vertices = 0;

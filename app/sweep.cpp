@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numeric>
-#include <optional>
+#include <limits>
 
 #include "app/commands.hpp"
 #include "app/job_array.hpp"

@@ -7,13 +7,13 @@
 
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "app/calibrate.hpp"
 #include "app/commands.hpp"
 #include "core/error.hpp"
-#include "io/durable.hpp"
 #include "io/scene.hpp"
 #include "physics/memory.hpp"
 

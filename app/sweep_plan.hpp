@@ -1,7 +1,6 @@
 // The points of a sweep before anything runs: lattice parameters, memory, time.
 #pragma once
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 

@@ -233,3 +233,15 @@ TEST_CASE("The nearest key", "[scene]") {
   CHECK(scene::nearest_key("cells.*.bending") == "cells.*.membrane.bending");
   CHECK(scene::nearest_key("") != "");
 }
+
+TEST_CASE("What differs between two scenes is told by key", "[scene]") {
+  const Problem a = parse_scene(simple, "simple.toml");
+  CHECK(scene_differences(a, a, "there", "here").empty());
+  const Problem b = parse_scene(simple, "simple.toml", {"run.strain=3", "cells.0.volume_fraction=0.2", "accuracy.vertex_update=chebyshev"});
+  const auto differences = scene_differences(a, b, "there", "here");
+  CHECK(differences == std::vector<std::string>{"cells.0.count = 10 there, (not set) here", "cells.0.volume_fraction = (not set) there, 0.2 here",
+                                                "accuracy.vertex_update = \"averaged\" there, \"chebyshev\" here", "run.strain = 10 there, 3 here"});
+  Problem none = a;
+  none.cells.clear();
+  CHECK(scene_differences(a, none, "there", "here").front() == "1 [[cells]] there, 0 here");
+}
