@@ -2,7 +2,7 @@
 import math
 
 from analysis_data import combined
-from panels import Drawn, Missing, abscissas, decayed, draw_against, families, finish_against, grid_against, key_below, palettes, power_law, value_range, why_nothing
+from panels import Drawn, Missing, abscissas, decayed, draw_against, families, finish_against, grid_against, palettes, power_law, value_range, why_nothing
 from style import GREY, INK, PAGE, PALE, draw_curve, draw_points, key, log_ticks, np, number_text, pale_key, plt, value_text
 
 

@@ -1,9 +1,8 @@
 """Figures 1b and 6 of Gross, Krüger & Varnik (EPL 2014) from an analysed sweep: viscosity with its fits, yield stress, stress fluctuations and their relaxation."""
 import math
 
-from analysis_data import Value
-from panels import Drawn, Missing, abscissas, decayed, draw_against, families, finish_against, grid_against, key_below, palettes, power_law, value_range, why_nothing
-from style import COLUMN, GREY, INK, PAGE, draw_curve, draw_points, key, log_ticks, np, number_text, pale_key, plt, value_text
+from panels import Drawn, Missing, abscissas, decayed, draw_against, families, finish_against, grid_against, palettes, power_law, value_range, why_nothing
+from style import COLUMN, GREY, PAGE, draw_curve, draw_points, key, np, number_text, pale_key, plt, value_text
 
 
 def chosen_law(thinning, yielding):

@@ -190,7 +190,7 @@ def balance(sweep, tally):
     log_ticks(axes.xaxis), log_ticks(axes.yaxis)
     keys = looks.keys(line=False) + [key(INK, "", "both sides equal")] + ([pale_key()] if tally.pale else [])
     axes.legend(handles=keys, loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0)
-    seen = [f"l = 2r′(φ^−⅓ − 1) with " + (f"the fitted r′ = {radius:.3g} r" if fitted else "the paper's r′ = 2/9 r, nothing being fitted")
+    seen = ["l = 2r′(φ^−⅓ − 1) with " + (f"the fitted r′ = {radius:.3g} r" if fitted else "the paper's r′ = 2/9 r, nothing being fitted")
             + f"; left over right side from {min(ratios):.2f} to {max(ratios):.2f}, median {np.median(ratios):.2f}."]
     return Drawn(figure, "All states collapse on the diagonal: velocity fluctuations carry the dissipation in the gaps.", seen)
 

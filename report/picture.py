@@ -196,8 +196,9 @@ def new_window():
     return window
 
 
-def render(surface, box, radius, walls, moving, width, height):
-    """RGB image [height][width][3] of the scene and the arrows' label points in pixels (origin at the upper left)."""
+def render(surface, box, radius, walls, moving, width, height, framed=None):
+    """RGB image [height][width][3] of the scene and the arrows' label points in pixels (origin at the upper left). The view is filled by the cells, or by
+    the points `framed` [n][3] for the same view of several surfaces."""
     factor = 2  # rendered larger and averaged down: smooth edges with every pass
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
@@ -210,7 +211,9 @@ def render(surface, box, radius, walls, moving, width, height):
     window.AddRenderer(renderer)
     extents = [(0, box[0], 0, box[1], 0, box[2])] + [arrow.GetBounds() for arrow in arrows]
     corners = [[extent[i & 1], extent[2 + (i >> 1 & 1)], extent[4 + (i >> 2)]] for extent in extents for i in range(8)]
-    set_camera(renderer, np.vstack([vtk_to_numpy(surface.GetPoints().GetData()), corners]), box / 2, width / height)
+    if framed is None:
+        framed = vtk_to_numpy(surface.GetPoints().GetData())
+    set_camera(renderer, np.vstack([framed, corners]), box / 2, width / height)
     set_lights(renderer)
     add_occlusion(renderer, radius)
     window.Render()

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Pictures of one run in time for ./dev report: its last snapshot, a strip of some, and an animation of all.
 
-    python report/snapshots.py DIR OUTPUT [--strip 5] [--frames 40]
+    python report/snapshots.py DIR OUTPUT [--prefix TEXT] [--strip 5] [--frames 24]
 
-DIR holds cells.vtkhdf; OUTPUT gets figure_1a.png and .pdf, snapshots.png and .pdf, motion.gif. In strip and animation a colour marks a cell.
+DIR holds cells.vtkhdf; OUTPUT gets figure_1a.png and .pdf, snapshots.png and .pdf, motion.gif, their names after the prefix. In strip and animation a colour marks a cell.
 A program of its own, because a graphics library without a display may end it: the report then goes on without pictures.
 Needs: pip install 'vtk>=9.4' numpy h5py matplotlib pillow.
 """
@@ -30,11 +30,13 @@ def images_of(data, steps, width, height):
     """RGB images in bytes [height][width][3] of the cells, each cell in a colour of its own, and the snapshots' times; one camera for all."""
     path = data.file("cells.vtkhdf")
     box, radius, walls, _ = snapshot_group(path)
+    margin = np.array([1.2, 1.2, 0.0]) * radius  # how far cells that have their centre in the box may stick out
+    framed = np.array([[(-margin[k], box[k] + margin[k])[i >> k & 1] for k in range(3)] for i in range(8)])
     images, times = [], []
     for step in steps:
         surface, time = read_snapshot(path, step)
         colour_surface(surface, "cell", data)
-        pixels, _ = render(surface, box, radius, walls, data.lattice.get("wall_velocity", 0) != 0, width, height)
+        pixels, _ = render(surface, box, radius, walls, data.lattice.get("wall_velocity", 0) != 0, width, height, framed)
         images.append((255 * np.clip(pixels, 0, 1)).astype(np.uint8))
         times.append(time)
     return images, times
@@ -77,18 +79,20 @@ def main():
     parser = argparse.ArgumentParser(description="Last snapshot, strip and animation of a run.")
     parser.add_argument("folder", metavar="DIR", help="output folder of `corpuscle run` with cells.vtkhdf")
     parser.add_argument("output", metavar="OUTPUT", help="where the pictures go")
+    parser.add_argument("--prefix", default="", metavar="TEXT", help="begins the names of the files")
     parser.add_argument("--strip", type=int, default=5, metavar="N", help="snapshots in the strip (default: 5)")
-    parser.add_argument("--frames", type=int, default=40, metavar="N", help="most pictures of the animation; 0: none (default: 40)")
+    parser.add_argument("--frames", type=int, default=24, metavar="N", help="most pictures of the animation; 0: none (default: 24)")
     arguments = parser.parse_args()
     data, output = RunData(arguments.folder), pathlib.Path(arguments.output)
     count = len(snapshot_group(data.file("cells.vtkhdf"))[3])
     if count == 0:
         sys.exit(f"{data.folder}/cells.vtkhdf holds no snapshot yet.")
-    draw_snapshot(data, -1, "velocity", [output / "figure_1a.png", output / "figure_1a.pdf"])
+    name = lambda text: output / f"{arguments.prefix}{text}"
+    draw_snapshot(data, -1, "velocity", [name("figure_1a.png"), name("figure_1a.pdf")])
     if count > 1 and arguments.strip > 1:
-        draw_strip(data, chosen(count, arguments.strip), [output / "snapshots.png", output / "snapshots.pdf"])
+        draw_strip(data, chosen(count, arguments.strip), [name("snapshots.png"), name("snapshots.pdf")])
     if count > 2 and arguments.frames > 1:
-        draw_motion(data, chosen(count, arguments.frames), output / "motion.gif")
+        draw_motion(data, chosen(count, arguments.frames), name("motion.gif"))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 Sizes are those of a journal: a column of 8.6 cm, a page of 17.8 cm, text of 8 points. Capillary numbers take their colour from viridis by their
 logarithm, volume fractions from plasma by their rank, directions from Okabe and Ito's palette; every colour comes with a symbol of its own.
 """
+import logging
 import math
 import sys
 
@@ -23,14 +24,15 @@ PALE = 0.55  # opacity of what is not converged
 PHI_TICKS = [0.1, 0.2, 0.3, 0.5, 0.7, 0.9]
 
 
-def use_style():
-    """Sets matplotlib up; call before anything is drawn."""
+def use_style(dpi=300):
+    """Sets matplotlib up; call before anything is drawn. `dpi`: resolution of PNGs."""
+    logging.getLogger("fontTools").setLevel(logging.ERROR)  # it remarks on the dates in font files
     plt.rcParams.update({
         "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 6.8,
         "legend.frameon": False, "legend.handlelength": 1.6, "legend.columnspacing": 1.0, "legend.handletextpad": 0.5, "lines.linewidth": 1.0,
         "lines.markersize": 4, "errorbar.capsize": 1.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
         "xtick.minor.width": 0.4, "ytick.minor.width": 0.4, "xtick.direction": "in", "ytick.direction": "in", "xtick.top": True, "ytick.right": True,
-        "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": INK, "xtick.color": INK, "ytick.color": INK, "savefig.dpi": 300,
+        "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": INK, "xtick.color": INK, "ytick.color": INK, "savefig.dpi": dpi,
         "pdf.fonttype": 42, "axes.axisbelow": True, "figure.constrained_layout.use": True, "axes.grid": True, "grid.color": "#E6E6E6", "grid.linewidth": 0.4,
     })
 
