@@ -105,7 +105,10 @@ class Run:
         self.curves, self.tensors = {}, data.get("tensors") or {}
         for key, entry in (data.get("curves") or {}).items():
             try:
-                self.curves[key] = Curve(entry)
+                self.curves[key] = curve = Curve(entry)
+                # A curve is not converged already when errors at its longest lags are too small; up to there it may be.
+                if curve.reason.startswith("errors beyond x") and np.isfinite(curve.trusted_until) and self.equilibration.get("converged"):
+                    curve.converged = True
             except BadAnalysis as error:
                 raise BadAnalysis(f"{name}: {key}: {error}") from None
         self.warnings = list(data.get("warnings") or [])

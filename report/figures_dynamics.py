@@ -24,7 +24,7 @@ def fit_range(curve, fit):
 
 def draw_decay(axes, log_axes, curve, fit, look, tally, name, until):
     """A normalised correlation with its stretched exponential: C against t, and -ln C against t on logarithmic axes, where it is a straight line."""
-    end = fit_range(curve, fit) if fit.exists() else 0
+    end = fit_range(curve, fit) if fit.exists() and curve.exists() else 0
     if draw_curve(axes, curve, look, tally, name, line=not fit.exists(), until=until) is None:
         return False
     amplitude = fit["amplitude"].value if fit.exists() else 1.0
@@ -60,7 +60,8 @@ def correlations(component):
                 curve, fit = run.curve(f"vacf_{component}"), run.fit(f"vacf_{component}_stretched_exponential")
                 if draw_decay(row[0], row[1], curve, fit, family.look(run), tally, run.name, until):
                     count += 1
-                    keys.append(key(*family.look(run), family.text(run) + (":\n" + stretched_formula(fit) if fit.exists() else ": no fit")))
+                    keys.append(key(*family.look(run), hollow=not curve.converged, label=family.text(run) + (":\n" + stretched_formula(fit) if fit.exists() else ": no fit")))
+            log_ticks(row[1].xaxis)
             row[1].legend(handles=keys[::-1], loc="upper left", bbox_to_anchor=(1.02, 1.02), borderaxespad=0, title=family.title, title_fontsize=7, alignment="left",
                           labelspacing=0.35)
             row[0].set_ylabel(rf"$C_{{v,{component}}}(t)/C_{{v,{component}}}(0)$")
@@ -142,7 +143,8 @@ def scaling(sweep, tally):
     for axes in grid:
         axes.plot(limits, limits, color=INK, linewidth=0.8, zorder=1)
         axes.set(xlim=limits, ylim=limits)
-        log_ticks(axes.xaxis), log_ticks(axes.yaxis)
+        for axis in (axes.xaxis, axes.yaxis):
+            log_ticks(axis)
     grid[0].set_ylabel(r"$D_{\mathrm{MSD}}/(\dot\gamma r^2)$")
     keys = looks.keys(line=False) + [key(INK, "", "both equal")] + ([pale_key()] if tally.pale else [])
     grid[-1].legend(handles=keys, loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0)
@@ -164,8 +166,10 @@ def add_guides(axes, curves):
         return
     x = curves[0][0]
     top = np.max([np.interp(x, c[0], c[1]) for c in curves], axis=0)
-    guide(axes, 1.2 * x[0], 3 * np.interp(1.2 * x[0], x, top), 2, min(8 * x[0], 0.3 * x[-1]))
-    guide(axes, x[-1] / 9, 3 * np.interp(x[-1] / 9, x, top), 1, 0.9 * x[-1])
+    for slope, start, end in ((2, 1.2 * x[0], min(8 * x[0], 0.2 * x[-1])), (1, x[-1] / 5, 0.9 * x[-1])):
+        inside = (x >= start) & (x <= end)
+        if inside.any() and end > 1.5 * start:
+            guide(axes, start, 2.5 * np.max(top[inside] * (start / x[inside]) ** slope), slope, end)
 
 
 def displacements(sweep, tally):
@@ -185,6 +189,7 @@ def displacements(sweep, tally):
                     y = line["slope"].value * x + (line["intercept"].value if line["intercept"].exists() else 0)
                     axes.plot(x[y > 0], y[y > 0], color=INK, linewidth=0.5, linestyle="-" if line.converged else "--", zorder=4)
             add_guides(axes, drawn)
+            log_ticks(axes.xaxis)
             row[0].set_ylabel(r"MSD$/r^2$")
         keys = [key(*family.look(r), family.text(r)) for r in reversed(family.runs)]
         keys += [key(INK, "", "fit: intercept + 2 $D\\,t$")] + ([pale_key()] if tally.pale else [])

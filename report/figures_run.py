@@ -5,7 +5,7 @@ from analysis_data import Value
 from figures_dynamics import add_guides, draw_decay, stretched_formula
 from figures_velocity import draw_density
 from panels import Drawn, Missing, decayed, why_nothing
-from style import COMPONENTS, GREY, PAGE, PALE, draw_curve, draw_points, key, np, plt, value_text
+from style import COMPONENTS, GREY, PAGE, PALE, draw_curve, draw_points, key, log_ticks, np, plt, value_text
 
 BLUE, ORANGE, GREEN, PINK = "#0072B2", "#D55E00", "#009E73", "#CC79A7"  # Okabe and Ito
 SERIES = [
@@ -127,12 +127,13 @@ def correlations(run, tally):
     for name in "xyz":
         fit = run.fit(f"vacf_{name}_stretched_exponential")
         if draw_decay(axes, log_axes, run.curve(f"vacf_{name}"), fit, COMPONENTS[name], tally, f"vacf_{name}", until):
-            keys.append(key(*COMPONENTS[name], name + (": " + stretched_formula(fit) if fit.exists() else ", not fitted")))
+            keys.append(key(*COMPONENTS[name], hollow=not run.curve(f"vacf_{name}").converged, label=name + (": " + stretched_formula(fit) if fit.exists() else ", not fitted")))
     if not keys:
         plt.close(figure)
         raise Missing(why_nothing(tally))
     axes.set(xlim=(-0.02 * until, until), ylim=(-0.3, 1.06), xlabel=r"$\dot\gamma t$", ylabel=r"$C_v(t)/C_v(0)$")
-    axes.legend(handles=keys, loc="upper right")
+    log_ticks(log_axes.xaxis)
+    axes.legend(handles=keys, loc="best")
     return Drawn(figure, "Figures 4a, b: C_v(t) = ⟨δu²⟩ exp[−(t/τ_v)^b] for γ̇t ≲ 1.", ["Right: a straight line of slope b where the stretched exponential holds."])
 
 
@@ -146,11 +147,13 @@ def displacements(run, tally):
         draw_curve(right, run.curve(f"msd_exponent_{name}"), COMPONENTS[name], tally, f"msd_exponent_{name}")
         d = run.estimate(f"diffusivity_msd_{name}")
         if drawn[-1] is not None:
-            keys.append(key(*COMPONENTS[name], f"{name}: $D/(\\dot\\gamma r^2)$ = {value_text(d.value, d.error)}" + ("" if d.converged else " (not converged)")))
+            keys.append(key(*COMPONENTS[name], hollow=not run.curve(f"msd_{name}").converged, label=f"{name}: $D/(\\dot\\gamma r^2)$ = {value_text(d.value, d.error)}" + ("" if d.converged else " (not converged)")))
     if not keys:
         plt.close(figure)
         raise Missing(why_nothing(tally))
     add_guides(left, drawn)
+    for axis in (left.xaxis, right.xaxis):
+        log_ticks(axis)
     for expected in (1, 2):
         right.axhline(expected, color=GREY, linewidth=0.6, linestyle=":")
     left.legend(handles=keys, loc="lower right")
@@ -165,9 +168,9 @@ def stresses(run, tally):
     for name, look, text, time in names:
         if draw_curve(left, run.curve(name), look, tally, name, until=until) is not None:
             tau = run.estimate(time)
-            keys.append(key(*look, f"{text}: $\\tau_\\sigma\\dot\\gamma$ = {value_text(tau.value, tau.error)}"))
+            keys.append(key(*look, hollow=not run.curve(name).converged, label=f"{text}: $\\tau_\\sigma\\dot\\gamma$ = {value_text(tau.value, tau.error)}" + ("" if tau.converged else " (not converged)")))
     left.set(xlim=(0, until), ylim=(-0.4, 1.05), xlabel=r"$\dot\gamma t$", ylabel=r"$C_\sigma(t)/C_\sigma(0)$")
-    left.legend(handles=keys, loc="upper right")
+    left.legend(handles=keys, loc="best")
     right.set_yscale("log")
     density = draw_curve(right, run.curve("pdf_stresslet"), (ORANGE, "s"), tally, "pdf_stresslet", line=False, symbols=60)
     right.set(xlabel=r"$S_{xz}/\langle S_{xz}\rangle$", ylabel="probability density")

@@ -187,7 +187,8 @@ def balance(sweep, tally):
     limits = (0.6 * min(ends), 1.6 * max(ends))
     axes.plot(limits, limits, color=INK, linewidth=0.8, zorder=1)
     axes.set(xlim=limits, ylim=limits, xlabel=r"$[(\eta/\eta_0-1)/(1-\phi)-1]\;l^2/r^2$", ylabel=r"$\Sigma_\alpha\langle\delta u_\alpha^2\rangle/(\dot\gamma r)^2$")
-    log_ticks(axes.xaxis), log_ticks(axes.yaxis)
+    for axis in (axes.xaxis, axes.yaxis):
+        log_ticks(axis)
     keys = looks.keys(line=False) + [key(INK, "", "both sides equal")] + ([pale_key()] if tally.pale else [])
     axes.legend(handles=keys, loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0)
     seen = ["l = 2r′(φ^−⅓ − 1) with " + (f"the fitted r′ = {radius:.3g} r" if fitted else "the paper's r′ = 2/9 r, nothing being fitted")

@@ -121,13 +121,14 @@ def families(sweep):
 
 
 def decayed(curves):
-    """Lag that shows all decays: 2.5 times the one at which the slowest curve is below 0.1."""
-    ends = []
+    """Lag that shows all decays: 2.5 times the one at which the slowest curve is below 0.1, or all lags where one never is."""
+    ends, longest = [], 0.0
     for curve in curves:
         if curve.exists():
             below = np.flatnonzero(curve.value < 0.1)
-            ends.append(curve.x[below[0]] if len(below) else curve.x[-1])
-    return 2.5 * max(ends) if ends else 1.0
+            ends.append(2.5 * curve.x[below[0]] if len(below) else math.inf)
+            longest = max(longest, curve.x[-1])
+    return min(max(ends), longest) if ends else 1.0
 
 
 def power_law(xs, values):

@@ -73,7 +73,7 @@ def analyse(folder, program, reason):
     except OSError as error:
         raise BadAnalysis(f"{program} cannot be started ({error.strerror}). Build it with `./dev build`, or draw what is there with --no-analyse.") from None
     after = (folder / "analysis.json").stat().st_mtime_ns if (folder / "analysis.json").exists() else 0
-    if done.returncode == 0 and after > before:
+    if done.returncode == 0 and after > 0:
         return
     words = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
     if after > before:  # a sweep of which some runs could not be analysed
@@ -85,18 +85,21 @@ def analyse(folder, program, reason):
 class Report:
     """Draws figures into a folder and keeps what the page needs; a figure that fails leaves its reason and does not stop the others."""
 
-    def __init__(self, output):
-        self.output, self.failures = output, 0
+    def __init__(self, output, pdf=True):
+        self.output, self.pdf, self.failures = output, pdf, 0
 
     def draw(self, name, title, function, stem):
-        """One figure: `function(tally)` returns a Drawn. Writes STEM.png and STEM.pdf."""
+        """One figure: `function(tally)` returns a Drawn. Writes STEM.png and, if wanted, STEM.pdf."""
         path = self.output / f"{stem}.png"
         tally = Tally()
         try:
             drawn = function(tally)
             drawn.figure.savefig(path)
-            drawn.figure.set_layout_engine("none")  # it is laid out: the same in both files
-            drawn.figure.savefig(path.with_suffix(".pdf"))
+            if self.pdf:
+                drawn.figure.set_layout_engine("none")  # it is laid out: the same in both files
+                drawn.figure.savefig(path.with_suffix(".pdf"))
+            else:
+                path.with_suffix(".pdf").unlink(missing_ok=True)  # of an earlier report
             return Entry(name, title, path, drawn.paper, drawn.seen, tally.sentences())
         except Missing as missing:
             reason = str(missing)
@@ -199,6 +202,7 @@ def arguments_of(argv):
     parser.add_argument("--run", action="append", default=[], metavar="NAME", help="run of a sweep to show in detail, or `all`; may be repeated (default: the densest)")
     parser.add_argument("--frames", type=int, default=24, metavar="N", help="most pictures of the animation; 0: none (default: 24)")
     parser.add_argument("--no-pictures", action="store_true", help="render no cells (which takes some seconds for each picture)")
+    parser.add_argument("--no-pdf", action="store_true", help="write no PDFs, which takes half of the time")
     parser.add_argument("--dpi", type=int, default=300, metavar="N", help="resolution of the PNGs in dots per inch (default: 300)")
     parser.add_argument("--program", metavar="PATH", default="corpuscle", help="the corpuscle that analyses (default: the one in PATH)")
     parser.add_argument("--no-analyse", action="store_true", help="draw analysis.json as it is, even when a run is newer")
@@ -219,7 +223,7 @@ def write_report(arguments):
         raise BadAnalysis(f"--run {arguments.run[0]}: {folder} is a single run, not a sweep. Leave --run out.")
     output = folder / "report"
     output.mkdir(exist_ok=True)
-    report = Report(output)
+    report = Report(output, not arguments.no_pdf)
     use_style(arguments.dpi)
     sections = (report_run if isinstance(data, Run) else report_sweep)(data, report, arguments)
     sample = data if isinstance(data, Run) else (data.runs + data.outside)[0]
