@@ -202,7 +202,7 @@ def displacements(sweep, tally):
     for axes in grid[-1]:
         axes.set_xlabel(r"$\dot\gamma t$")
     seen = []
-    for when, text in (("early", "Local exponent below γ̇t = 0.3"), ("late", "in the last trusted decade")):
+    for when, text in (("early", "Local exponent below γ̇t = 0.3"), ("late", "In the last trusted factor of ten")):
         span = value_range([r.estimate(f"msd_exponent_{n}_{when}") for r in sweep.runs for n in "yz"])
         if span:
             seen.append(f"{text}: {span[0]:.2f} to {span[1]:.2f}.")
@@ -266,7 +266,7 @@ def diffusivities(sweep, tally):
         axes.set_xlabel("")
     if "ca" in columns:
         figure.legend(handles=looks["phi"].keys(), loc="outside lower center", ncols=len(sweep.phis) if len(sweep.phis) < 8 else 6)
-    return Drawn(figure, "D/(γ̇r²) nearly linear in φ at large Ca, nearly quadratic at small Ca with a maximum at φ ≈ 0.66; MSD and VACF agree.",
+    return Drawn(figure, "D/(γ̇r²) nearly linear in φ at large Ca, nearly quadratic at small Ca with a maximum at φ ≈ 0.66; from the MSD and from the VACF.",
                  ["Closed symbols: half the slope of the MSD; open ones: integral of the VACF; pale ones are not converged. Lines: power laws through D of the MSD at φ < 0.7."] + seen)
 
 

@@ -129,7 +129,7 @@ def stress_correlations(sweep, tally):
     grid[0][0].set(xlim=(0, until), ylim=(-0.3, 1.05))
     for axes in grid[-1]:
         axes.set_xlabel(r"$\dot\gamma t$")
-    return Drawn(figure, "The autocorrelation of the shear stress decays within about a unit strain.",
+    return Drawn(figure, "Autocorrelation of the shear stress.",
                  ["Relaxation times are in figure 6c. Bands are standard errors; dotted where lags are too long for errors to be right."])
 
 

@@ -147,7 +147,8 @@ def displacements(run, tally):
         draw_curve(right, run.curve(f"msd_exponent_{name}"), COMPONENTS[name], tally, f"msd_exponent_{name}")
         d = run.estimate(f"diffusivity_msd_{name}")
         if drawn[-1] is not None:
-            keys.append(key(*COMPONENTS[name], hollow=not run.curve(f"msd_{name}").converged, label=f"{name}: $D/(\\dot\\gamma r^2)$ = {value_text(d.value, d.error)}" + ("" if d.converged else " (not converged)")))
+            keys.append(key(*COMPONENTS[name], hollow=not run.curve(f"msd_{name}").converged,
+                            label=f"{name}: $D/(\\dot\\gamma r^2)$ = {value_text(d.value, d.error)}" + ("" if d.converged else " (not converged)")))
     if not keys:
         plt.close(figure)
         raise Missing(why_nothing(tally))
@@ -168,7 +169,8 @@ def stresses(run, tally):
     for name, look, text, time in names:
         if draw_curve(left, run.curve(name), look, tally, name, until=until) is not None:
             tau = run.estimate(time)
-            keys.append(key(*look, hollow=not run.curve(name).converged, label=f"{text}: $\\tau_\\sigma\\dot\\gamma$ = {value_text(tau.value, tau.error)}" + ("" if tau.converged else " (not converged)")))
+            keys.append(key(*look, hollow=not run.curve(name).converged,
+                            label=f"{text}: $\\tau_\\sigma\\dot\\gamma$ = {value_text(tau.value, tau.error)}" + ("" if tau.converged else " (not converged)")))
     left.set(xlim=(0, until), ylim=(-0.4, 1.05), xlabel=r"$\dot\gamma t$", ylabel=r"$C_\sigma(t)/C_\sigma(0)$")
     left.legend(handles=keys, loc="best")
     right.set_yscale("log")
@@ -177,7 +179,7 @@ def stresses(run, tally):
     if not keys and density is None:
         plt.close(figure)
         raise Missing(why_nothing(tally))
-    return Drawn(figure, "Figures 6b, c: the stress relaxes within about a unit strain.", ["Left: autocorrelation of the shear stress; right: density of the cells' stresslets."])
+    return Drawn(figure, "Figures 6b, c: stress autocorrelation and its relaxation time.", ["Left: autocorrelation of the shear stress; right: density of the cells' stresslets."])
 
 
 def structure(run, tally):

@@ -37,7 +37,7 @@ def variances(sweep, tally):
         fit = power_law([r.ca for r in sweep.of(phi=phi)], [r.estimate("velocity_variance_z") for r in sweep.of(phi=phi)])
         if fit:
             seen.append(f"At φ = {phi:.2f} the variance along z goes as Ca^{value_text(fit[0].value, fit[0].error)}.")
-    return Drawn(figure, "Variances of the cells' velocities about the mean flow in units of (γ̇r)²: they grow with φ, and in dense suspensions with falling Ca.", seen)
+    return Drawn(figure, "Variances of the cells' velocities about the mean flow in units of (γ̇r)², against φ and Ca.", seen)
 
 
 def core_and_tails_line(x, fit):
