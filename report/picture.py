@@ -196,8 +196,9 @@ def new_window():
     return window
 
 
-def render(surface, box, radius, walls, moving, width, height):
-    """RGB image [height][width][3] of the scene and the arrows' label points in pixels (origin at the upper left)."""
+def render(surface, box, radius, walls, moving, width, height, framed=None):
+    """RGB image [height][width][3] of the scene and the arrows' label points in pixels (origin at the upper left). The view is filled by the cells, or by
+    the points `framed` [n][3] for the same view of several surfaces."""
     factor = 2  # rendered larger and averaged down: smooth edges with every pass
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
@@ -210,7 +211,9 @@ def render(surface, box, radius, walls, moving, width, height):
     window.AddRenderer(renderer)
     extents = [(0, box[0], 0, box[1], 0, box[2])] + [arrow.GetBounds() for arrow in arrows]
     corners = [[extent[i & 1], extent[2 + (i >> 1 & 1)], extent[4 + (i >> 2)]] for extent in extents for i in range(8)]
-    set_camera(renderer, np.vstack([vtk_to_numpy(surface.GetPoints().GetData()), corners]), box / 2, width / height)
+    if framed is None:
+        framed = vtk_to_numpy(surface.GetPoints().GetData())
+    set_camera(renderer, np.vstack([framed, corners]), box / 2, width / height)
     set_lights(renderer)
     add_occlusion(renderer, radius)
     window.Render()
@@ -230,8 +233,8 @@ def render(surface, box, radius, walls, moving, width, height):
     return pixels, labels
 
 
-def compose(pixels, labels, bar, title, path):
-    """Adds title, arrow labels and colour bar around the image's used part, and writes the PNG (1600 x 1000)."""
+def compose(pixels, labels, bar, title, paths):
+    """Adds title, arrow labels and colour bar around the image's used part, and writes it (1600 x 1000) to each of the paths."""
     plt.rcParams.update({"font.size": 20, "text.color": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK})
     used = np.flatnonzero((pixels < 0.995).any(axis=(0, 2)))
     first, last = (used[0], used[-1] + 1) if len(used) else (0, pixels.shape[1])
@@ -252,7 +255,29 @@ def compose(pixels, labels, bar, title, path):
         mappable = matplotlib.cm.ScalarMappable(plt.Normalize(*bar[1]), bar[0])
         figure.colorbar(mappable, cax=bar_axes).set_label(bar[2], labelpad=12, fontsize=21)
         bar_axes.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(7))
-    figure.savefig(path)
+    for path in paths:
+        figure.savefig(path)
+    plt.close(figure)
+
+
+def draw_snapshot(data, step, choice, paths):
+    """Renders snapshot `step` (negative: from the end) of a RunData, coloured by `choice`, and writes it to each of the paths."""
+    path = data.file("cells.vtkhdf")
+    box, radius, walls, times = snapshot_group(path)
+    if not -len(times) <= step < len(times):
+        sys.exit(f"--step {step}: {path} holds {len(times)} snapshots, numbered 0 to {len(times) - 1}.")
+    surface, time = read_snapshot(path, step % len(times))
+    bar = colour_surface(surface, choice, data)
+    moving = data.lattice.get("wall_velocity", 0) != 0
+    title = ",   ".join(data.numbers() + [time_text(data, time)])
+    pixels, labels = render(surface, box, radius, walls, moving, 1330 if bar else 1590, 915)
+    compose(pixels, labels, bar, title, paths)
+
+
+def time_text(data, time):
+    """The time of a snapshot for a title."""
+    strained = data.lattice.get("shear_rate", 1) != 0
+    return rf"strain $\dot\gamma t$ = {time:.3g}" if strained else f"step {time:.0f}"
 
 
 def main():
@@ -264,18 +289,8 @@ def main():
     arguments = parser.parse_args()
 
     data = RunData(arguments.folder)
-    path = data.file("cells.vtkhdf")
-    box, radius, walls, times = snapshot_group(path)
-    if not -len(times) <= arguments.step < len(times):
-        sys.exit(f"--step {arguments.step}: {path} holds {len(times)} snapshots, numbered 0 to {len(times) - 1}.")
-    surface, time = read_snapshot(path, arguments.step % len(times))
-    bar = colour_surface(surface, arguments.color, data)
-    moving = data.lattice.get("wall_velocity", 0) != 0
-    strained = data.lattice.get("shear_rate", 1) != 0
-    title = ",   ".join(data.numbers() + [rf"strain $\dot\gamma t$ = {time:.3g}" if strained else f"step {time:.0f}"])
-    pixels, labels = render(surface, box, radius, walls, moving, 1330 if bar else 1590, 915)
     output = arguments.output or str(data.folder / "picture.png")
-    compose(pixels, labels, bar, title, output)
+    draw_snapshot(data, arguments.step, arguments.color, [output])
     print(output)
 
 
