@@ -84,7 +84,7 @@ class ShearRateChoice {
     const CellTypeLattice& cell = l_.cells[i];
     const double none = std::numeric_limits<double>::infinity();
     const double volume = spec.membrane.volume.value_or(0) * spec.relative_stiffness / cell.radius, area = spec.membrane.global_area.value_or(0) * spec.relative_stiffness;
-    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stable_response(p_.accuracy)) / volume : none, area > 0 ? area_modulus(cell, stable_response(p_.accuracy)) / area : none,
+    return {1 / load_per_modulus(i), volume > 0 ? volume_modulus(cell, stable_response(p_.accuracy)) / volume : none, area > 0 ? area_modulus(cell, stable_area_response(p_.accuracy)) / area : none,
             p_.contact.enabled ? stiffness_.contact * l_.viscosity / p_.contact.strength : none};
   }
 

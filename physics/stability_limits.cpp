@@ -193,7 +193,7 @@ void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
         "lower accuracy.shear_modulus, or let the program choose it");
     if (m.volume > 0) add(fmt::format("volume force of {}", cell.name), volume_response(cell, m.volume), stable_response(problem.accuracy), fmt::format("lower cells.{}.membrane.volume", i));
     if (m.global_area > 0)
-      add(fmt::format("area force of {}", cell.name), area_response(cell, m.global_area), stable_response(problem.accuracy), fmt::format("lower cells.{}.membrane.global_area", i));
+      add(fmt::format("area force of {}", cell.name), area_response(cell, m.global_area), stable_area_response(problem.accuracy), fmt::format("lower cells.{}.membrane.global_area", i));
     if (cell.edge < finest_edge * (1 - 1e-3) || cell.edge > coarsest_edge * (1 + 1e-3))
       lattice.warnings.push_back(fmt::format("The mesh of {} has edges of {:.3g} lattice units on average; stability was measured for {} to {} only: change accuracy.subdivision",
                                              cell.name, cell.edge, finest_edge, coarsest_edge));

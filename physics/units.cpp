@@ -177,7 +177,8 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
   for (std::size_t i = 0; i < problem.cells.size(); ++i) {
     const MembraneSpec& spec = problem.cells[i].membrane;
     CellTypeLattice& cell = lattice.cells[i];
-    const double response = std::min(default_response, stability_margin * stable_response(problem.accuracy));
+    const double volume_response = std::min(default_response, stability_margin * stable_response(problem.accuracy));
+    const double area_response = std::min(default_response, stability_margin * stable_area_response(problem.accuracy));
     MembraneModuli& m = cell.moduli;
     m.law = spec.law;
     m.shear = kappa * problem.cells[i].relative_stiffness;
@@ -188,8 +189,8 @@ void set_moduli(const Problem& problem, double kappa, LatticeParameters& lattice
     const double followed = problem.accuracy.vertex_update == VertexUpdate::chebyshev ? 5 : 0;
     // A sphere of fixed volume can't deform without gaining area, and a neo-Hookean membrane is meant to dilate: an area force there only on request.
     const bool keeps_area = spec.law == StrainLawKind::skalak && problem.cells[i].shape != ShapeKind::sphere;
-    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::max(std::min(penalty * lattice.viscosity, area_modulus(cell, response)), followed * m.shear) : 0;
-    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : std::max(volume_modulus(cell, response), followed * m.shear);
+    m.global_area = spec.global_area ? *spec.global_area * m.shear : keeps_area ? std::max(std::min(penalty * lattice.viscosity, area_modulus(cell, area_response)), followed * m.shear) : 0;
+    m.volume = spec.volume ? *spec.volume * m.shear / cell.radius : std::max(volume_modulus(cell, volume_response), followed * m.shear);
     cell.stretching_force = problem.cells[i].stretch.force.value_or(0) * m.shear * cell.radius;
   }
   if (problem.contact.enabled && kappa > 0) {
