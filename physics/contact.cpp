@@ -1,11 +1,20 @@
 #include "physics/contact.hpp"
 
+#include <fmt/format.h>
+
 #include <Kokkos_BitManipulation.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
 
 namespace corpuscle {
 namespace {
+
+/// A state that breaks between two guards may throw all vertices to one place, where every one is a neighbour of every other: the search would take hours. The densest healthy
+/// meshes (edge 0.4, range 3) put some hundreds into a bin.
+constexpr int most_in_a_bin = 4096;
 
 using DynamicRange = Kokkos::RangePolicy<ExecSpace, Kokkos::Schedule<Kokkos::Dynamic>, Kokkos::IndexType<int>>;
 
@@ -197,6 +206,22 @@ Array1<int> first_vertices(const Array1<int>& cell_of_vertex) {
   return first;
 }
 
+/// Vertices in the fullest bin.
+int fullest_bin(const Array1<int>& begin, const int bins) {
+  int fullest = 0;
+  Kokkos::parallel_reduce("contact_fullest_bin", Kokkos::RangePolicy<ExecSpace>(0, bins), KOKKOS_LAMBDA(const int b, int& most) {
+    const int count = begin(b + 1) - begin(b);
+    most = count > most ? count : most;
+  }, Kokkos::Max<int>(fullest));
+  return fullest;
+}
+
+std::int64_t sum_of(const Array1<int>& counts, const int rows) {
+  std::int64_t total = 0;
+  Kokkos::parallel_reduce("contact_total", Kokkos::RangePolicy<ExecSpace>(0, rows), KOKKOS_LAMBDA(const int v, std::int64_t& sum) { sum += counts(v); }, total);
+  return total;
+}
+
 /// In place: the counts in begin(0) ... begin(n - 1) become offsets, begin(n) the total, which is also returned.
 int counts_to_offsets(const Array1<int>& begin) {
   const int rows = int(begin.extent(0)) - 1;
@@ -247,12 +272,23 @@ void Contact::update_lists(const VertexVectors& positions) {
   next_test_ = 1;
   Kokkos::parallel_for("contact_keys", Kokkos::RangePolicy<ExecSpace>(0, vertices), BinKeys{box_, grid_, positions, built_at_, keys_});
   bins_.build(keys_, vertices, grid_.bins());
+  const int fullest = fullest_bin(bins_.begin(), grid_.bins());
+  if (fullest > most_in_a_bin) {
+    rebuilds_ = 0;  // there are no lists
+    throw SimulationError(fmt::format("{} vertices lie within {:.3g} lattice units of each other: cells lie on top of each other, or all at a wall, so the state is broken.", fullest,
+                                      parameters_.range + parameters_.skin));
+  }
   Kokkos::parallel_for("contact_bin", Kokkos::RangePolicy<ExecSpace>(0, vertices), BinVertices{box_, positions, cell_of_vertex_, bins_.order(), binned_});
   const double reach = parameters_.range + parameters_.skin;
   int far = 0;
   Kokkos::parallel_reduce("contact_own_images", Kokkos::RangePolicy<ExecSpace>(0, vertices), FarFromFirst{box_, positions, cell_of_vertex_, first_vertex_, reach}, far);
   FindNeighbours find{box_, grid_, positions, bins_.begin(), bins_.order(), binned_, rows_, reach, far > 0, false};
   Kokkos::parallel_for("contact_count", portions(vertices), find);
+  if (const std::int64_t pairs = sum_of(rows_.begin, vertices); pairs > std::numeric_limits<int>::max()) {
+    rebuilds_ = 0;
+    throw SimulationError(fmt::format("{} pairs of vertices are in reach of contact forces, {} are supported: lower contact.range, or the state is broken.", pairs,
+                                      std::numeric_limits<int>::max()));
+  }
   const int total = counts_to_offsets(rows_.begin);
   if (int(rows_.list.extent(0)) < total)
     rows_.list = Array1<int>(Kokkos::view_alloc(Kokkos::WithoutInitializing, "contact_list"), total + total / 4);

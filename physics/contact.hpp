@@ -34,7 +34,7 @@ class Contact {
   /// @param cell_of_vertex [V]; vertices of the same cell do not repel each other (its periodic images do)
   Contact(const PeriodicBox& box, const ContactParameters& parameters, const Array1<int>& cell_of_vertex);
 
-  /// Adds the repulsion to `forces` ([V][3], lattice units).
+  /// Adds the repulsion to `forces` ([V][3], lattice units). @throws SimulationError where thousands of vertices lie in one place: the state is broken
   void add_forces(const VertexVectors& positions, const VertexVectors& forces);
 
   /// Smallest distance between vertices of different cells among those within the range of the lists; the range plus skin if there are none.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/error.hpp"
 #include "physics/cell_sampler.hpp"
 #include "physics/contact.hpp"
 #include "physics/coupling.hpp"
@@ -125,7 +126,14 @@ class SuspensionOf final : public Suspension {
   void compute_forces(const VertexVectors& positions, const VertexVectors& forces, CellSampler* sampler = nullptr) {
     for (const auto& membrane : membranes_) membrane->compute_forces(positions, forces);
     if (sampler) sampler->measure_membrane_stress(*cells_);
-    if (contact_) contact_->add_forces(positions, forces);
+    if (contact_) {
+      try {
+        contact_->add_forces(positions, forces);
+      } catch (const SimulationError&) {
+        check();  // knows the cause better
+        throw;
+      }
+    }
     if (sampler && contact_) sampler->measure_contact_stress(*cells_, *contact_);
     if (stretching_) stretching_->add_forces(forces);
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/error.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
@@ -121,4 +122,18 @@ TEST_CASE("Forces of moving vertices have the same bits whenever the neighbour l
       CHECK(kept.rebuilds() > 2);
       CHECK(kept.rebuilds() < 20);
     }
+}
+
+TEST_CASE("The search for contacts ends a run in which thousands of vertices lie in one place, instead of looking at all pairs", "[contact]") {
+  const double length[3] = {20, 20, 20};
+  const PeriodicBox box(20, 20, 20, true);
+  const auto s = scatter(40000, length, 100, 3);
+  Contact contact(box, {0.3, 1.0, 0.6}, s.cell);
+  contact.add_forces(s.positions, s.forces);
+  CHECK(contact.rebuilds() == 1);
+  auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace{}, s.positions);
+  for (int v = 0; v < 20000; ++v) x(v, 2) = 1e6, x(v, 0) = x(v, 1) = 0.5;  // beyond a wall, where they count to the last bins
+  Kokkos::deep_copy(s.positions, x);
+  CHECK_THROWS_AS(contact.add_forces(s.positions, s.forces), SimulationError);
+  CHECK(contact.rebuilds() == 0);  // guards look at no lists now
 }
