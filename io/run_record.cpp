@@ -119,7 +119,8 @@ std::vector<double> column_of(const hdf5::File& file, const std::string& name, c
     return series;
   }
   const auto data = file.read_rows<double>(name, 0, rows);
-  const std::size_t width = rows > 0 ? data.values.size() / rows : 0;
+  if (rows == 0) return series;
+  const std::size_t width = data.values.size() / rows;
   if (column >= width) throw OutputError(fmt::format("{}: {} has {} numbers a sample", record.directory, name, width));
   for (std::size_t i = 0; i < grid.rows.size(); ++i) series[static_cast<std::size_t>(grid.times[i])] = data.values[grid.rows[i] * width + column];
   return series;
