@@ -9,8 +9,8 @@
 #include "app/commands.hpp"
 #include "core/error.hpp"
 #include "io/analysis_file.hpp"
+#include "io/durable.hpp"
 #include "io/run_record.hpp"
-#include "io/text_file.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -36,8 +36,8 @@ int analyse(const AnalyseOptions& options) {
   require_replaceable(output, analysis_format);
   const analysis::Analysis analysis = analysis::analyse(record, choices_of(options));
   const std::string page = analysis_page(record, analysis);
-  write_text_file(output, analysis_json(record, analysis).dump(1) + "\n", "the analysis");
-  write_text_file(fs::path(output).replace_extension(".md"), page, "the page of the analysis");
+  replace_file(output, analysis_json(record, analysis).dump(1) + "\n", "the analysis");
+  replace_file(fs::path(output).replace_extension(".md"), page, "the page of the analysis");
   fmt::print("{}\nresults in {}\n", page, output.string());
   return exit_code::success;
 }

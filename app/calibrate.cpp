@@ -59,6 +59,12 @@ double search_seconds(const LatticeParameters& lattice, const Cells& cells) {
 
 }  // namespace
 
+double Calibration::seconds_per_step(const LatticeParameters& lattice) const {
+  double vertices = 0;
+  for (const auto& type : lattice.cells) vertices += double(type.count * type.vertices);
+  return per_node * lattice.box_volume() + (per_vertex + per_vertex_sampled / double(lattice.series_every)) * vertices;
+}
+
 Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) {
   const bool single = problem.accuracy.precision == Precision::single_precision;
   const auto fluid = [&](const std::array<int, 3>& nodes) {

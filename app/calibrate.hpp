@@ -10,6 +10,8 @@ struct Calibration {
   double per_node = 0;
   double per_vertex = 0;          ///< membranes, contacts with their share of the searches for neighbours, coupling; 0 without cells
   double per_vertex_sampled = 0;
+  /// Of a scene like the one that was measured.
+  double seconds_per_step(const LatticeParameters& lattice) const;
 };
 /// Runs small versions of the scene for about a second. Kokkos must be running.
 Calibration calibrate(const Problem& problem, const LatticeParameters& lattice);

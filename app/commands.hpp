@@ -36,6 +36,18 @@ struct ResumeOptions {
 };
 int resume(const ResumeOptions& options);
 
+struct SweepOptions {
+  std::string sweep;   ///< path of the TOML file
+  std::string output;
+  int jobs = 0;        ///< runs at a time; 0: as the cores allow
+  int threads = 0;     ///< of each run; 0: by its size
+  std::string wall_time;
+  bool job_array = false;  ///< write a Slurm job array instead of running
+  bool dry_run = false;    ///< only print what would be done
+};
+/// Exit code 0: all finished, 1: some failed, 75 and 130: stopped with checkpoints.
+int sweep(const SweepOptions& options);
+
 struct CheckOptions {
   std::string directory;
   bool json = false;

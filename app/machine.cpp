@@ -7,7 +7,9 @@
 #include <sys/utsname.h>
 
 #include <Kokkos_Core.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -31,7 +33,31 @@ std::string value_in(const char* path, const std::string& key, char separator) {
   return "unknown";
 }
 
+/// "  1234 kB" in bytes; 0 for anything else.
+std::int64_t kilobytes(const std::string& text) { return 1024 * std::strtoll(text.c_str(), nullptr, 10); }
+
+/// Limit of the control group that this process is in, as batch systems and containers set it; 0: none.
+std::int64_t group_limit() {
+  std::string path;
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);)
+    if (line.starts_with("0::")) path = line.substr(3);
+  for (const std::string& group : {"/sys/fs/cgroup" + path, std::string("/sys/fs/cgroup")}) {
+    std::int64_t limit = 0;
+    if (std::ifstream(group + "/memory.max") >> limit) return limit;  // the word "max" means none
+  }
+  return 0;
+}
+
+std::int64_t memory_in(const char* line) {
+  const std::int64_t machine = kilobytes(value_in("/proc/meminfo", line, ':')), group = group_limit();
+  return group > 0 && machine > 0 ? std::min(machine, group) : machine;
+}
+
 }  // namespace
+
+std::int64_t total_memory_bytes() { return memory_in("MemTotal"); }
+std::int64_t available_memory_bytes() { return memory_in("MemAvailable"); }
 
 std::string cpu_model() { return value_in("/proc/cpuinfo", "model name", ':'); }
 std::int64_t cpu_cores() { return std::thread::hardware_concurrency(); }

@@ -160,9 +160,7 @@ int plan(const PlanOptions& options) {
   print_warnings(lattice.warnings);
   const KokkosSession session(options.threads);
   const Calibration calibration = calibrate(problem, lattice);
-  std::int64_t vertices = 0;
-  for (const auto& type : lattice.cells) vertices += type.count * type.vertices;
-  const double per_step = calibration.per_node * lattice.box_volume() + (calibration.per_vertex + calibration.per_vertex_sampled / double(lattice.series_every)) * double(vertices);
+  const double per_step = calibration.seconds_per_step(lattice);
   const double seconds = per_step * double(lattice.steps);
   const MemoryEstimate memory = predict_memory(problem, lattice);
   if (options.json)

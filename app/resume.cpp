@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <optional>
 
@@ -9,6 +8,7 @@
 #include "app/time_loop.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/durable.hpp"
 #include "io/lock.hpp"
 #include "io/scene.hpp"
 
@@ -64,12 +64,7 @@ void check_same_lattice(const CheckpointFile& file, const LatticeParameters& lat
 
 /// scene.toml and run.h5 say what the run is now.
 void state_length(const fs::path& directory, const Problem& problem, const LatticeParameters& lattice, Outputs& outputs) {
-  const fs::path path = directory / "scene.toml", temporary = directory / "scene.toml.tmp";
-  std::ofstream scene(temporary);
-  std::error_code error;
-  if (!(scene << to_toml(problem) << std::flush)) throw OutputError(temporary.string() + " can't be written (is the disk full?)");
-  fs::rename(temporary, path, error);
-  if (error) throw OutputError(fmt::format("{} can't be written: {}", path.string(), error.message()));
+  replace_file(directory / "scene.toml", to_toml(problem), "the scene");
   outputs.set_length(to_toml(problem), lattice.steps);
 }
 

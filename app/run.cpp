@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/output_directory.hpp"
 #include "app/replaced_results.hpp"
 #include "app/time_loop.hpp"
 #include "core/error.hpp"
@@ -21,18 +21,6 @@ namespace corpuscle::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Refuses directories that cannot be written, or that another run writes to; creates nothing.
-void require_writable(const fs::path& directory) {
-  std::error_code error;
-  fs::path existing = fs::absolute(directory);
-  while (!existing.empty() && !fs::exists(existing, error)) existing = existing.parent_path();
-  if (!fs::is_directory(existing, error))
-    throw InputError(fmt::format("--output {}: {} is not a directory; choose another place.", directory.string(), existing.string()));
-  if (access(existing.c_str(), W_OK | X_OK) != 0)
-    throw InputError(fmt::format("--output {}: no permission to write in {}; choose another place.", directory.string(), existing.string()));
-  require_unlocked(directory);
-}
 
 /// Refuses directories that hold results, unless they are to be replaced.
 void require_no_results(const fs::path& directory, bool overwrite) {
@@ -106,8 +94,7 @@ int run(const RunOptions& options) {
   Checkpoints checkpoints(directory, problem, lattice);
   std::error_code error;
   const bool existed = fs::exists(directory, error);
-  fs::create_directories(directory, error);
-  if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
+  create_output_directory(directory);
   std::optional<DirectoryLock> lock;
   std::optional<ReplacedResults> replaced;
   std::optional<Outputs> created;

@@ -10,9 +10,11 @@
 #include <set>
 
 #include "app/commands.hpp"
+#include "app/output_directory.hpp"
 #include "app/stability_cases.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "io/durable.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -29,18 +31,6 @@ Json read_results(const fs::path& file) {
   if (read.is_discarded() || !read.contains("cases") || !read["cases"].is_array())
     throw InputError(fmt::format("{} is no result of corpuscle stability: remove it or choose another --output", file.string()));
   return read;
-}
-
-/// To a temporary name first: an interrupted search leaves a whole file.
-void write_results(const fs::path& file, const Json& results) {
-  auto temporary = file;
-  temporary += ".tmp";
-  std::ofstream out(temporary);
-  out << results.dump(1) << '\n';
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(temporary, file, error);
-  if (!out || error) throw OutputError(file.string() + " can't be written (is the disk full?)");
 }
 
 Json search(const StabilityCase& c, Prober& prober) {
@@ -93,9 +83,7 @@ int stability(const StabilityOptions& options) {
   for (const auto& wanted : options.only)
     if (!known.contains(wanted)) throw InputError(fmt::format("--only {} is no parameter of the search; the parameters are {}", wanted, fmt::join(known, ", ")));
   const fs::path directory = options.output, file = directory / "stability.json";
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw InputError(fmt::format("--output {} can't be created ({}); choose another place.", directory.string(), error.message()));
+  create_output_directory(directory);
   Json results = read_results(file);
   results["version"] = version_string();
   std::set<std::string> done;
@@ -108,7 +96,7 @@ int stability(const StabilityOptions& options) {
     if (!options.only.empty() && std::find(options.only.begin(), options.only.end(), c.parameter) == options.only.end()) continue;
     if (c.conditions.find(options.conditions) == std::string::npos || done.contains(c.id())) continue;
     results["cases"].push_back(search(c, prober));
-    write_results(file, results);
+    replace_file(file, results.dump(1) + "\n", "the results");  // an interrupted search leaves a whole file
     std::cout << line(results["cases"].back()) << std::endl;
   }
   fmt::print("results in {}; figure and docs/stability.md: python report/stability.py {}\n", file.string(), file.string());

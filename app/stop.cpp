@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <limits>
 #include <regex>
 
 #include "core/error.hpp"
@@ -31,8 +32,9 @@ void listen_to_signals() {
 
 Stop signal_received() { return received; }
 
-bool WallTime::over(double seconds_to_finish) const {
-  return limit_ > 0 && std::chrono::duration<double>(Clock::now() - process_start).count() + seconds_to_finish >= limit_;
+double WallTime::left() const {
+  if (!(limit_ > 0)) return std::numeric_limits<double>::infinity();
+  return limit_ - std::chrono::duration<double>(Clock::now() - process_start).count();
 }
 
 double parse_wall_time(const std::string& text) {

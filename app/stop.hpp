@@ -18,7 +18,9 @@ class WallTime {
   /// @param limit in seconds; 0: none
   explicit WallTime(double limit) : limit_(limit) {}
   /// Whether it is time to end, with this much left to do afterwards.
-  bool over(double seconds_to_finish) const;
+  bool over(double seconds_to_finish) const { return left() <= seconds_to_finish; }
+  /// Seconds; infinity without a limit.
+  double left() const;
 
  private:
   double limit_;

@@ -7,6 +7,9 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <system_error>
+
+#include "core/error.hpp"
 
 namespace corpuscle {
 
@@ -67,6 +70,24 @@ void sync_directory(const std::filesystem::path& directory) {
   if (file < 0) return;
   (void)sync_file(file);
   ::close(file);
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view text, const std::string& what) {
+  auto temporary = path;
+  temporary += ".tmp";
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  int failed = file < 0 ? errno : write_at(file, 0, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+  if (failed == 0) failed = sync_file(file);
+  if (file >= 0 && ::close(file) != 0 && failed == 0) failed = errno;
+  std::error_code error = std::error_code(failed, std::generic_category());
+  if (failed == 0) std::filesystem::rename(temporary, path, error);
+  if (!error) {
+    sync_directory(path.parent_path());
+    return;
+  }
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  throw OutputError(path.string() + ": writing " + what + " failed: " + error.message());
 }
 
 }  // namespace corpuscle

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace corpuscle {
 
@@ -26,5 +28,8 @@ int write_at(int file, std::uint64_t address, std::span<const unsigned char> byt
 int sync_file(int file);
 /// The same for the names in a directory (new, renamed, removed files).
 void sync_directory(const std::filesystem::path& directory);
+/// Writes a small text file as a whole: to a temporary name (`path`.tmp), to disk, then renamed, so that there always is the old one or the new one.
+/// @throws OutputError "path: writing WHAT failed: reason"; the old file is then still there.
+void replace_file(const std::filesystem::path& path, std::string_view text, const std::string& what);
 
 }  // namespace corpuscle

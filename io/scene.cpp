@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <type_traits>
 
 #include "core/error.hpp"
@@ -223,19 +222,6 @@ Problem parse_scene(std::string_view text, const std::string& origin, const std:
   return problem;
 }
 
-Problem read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  constexpr std::size_t largest = 4u << 20;  // no scene is that long; keeps devices and data files from being read whole
-  const std::string name = scene::one_line(path, 300);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw InputError(fmt::format("{}: there is no such scene file; check the path", name));
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a directory, not a scene file; name the .toml file in it", name));
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: the scene file can't be opened for reading; check its permissions", name));
-  std::string text(largest + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > largest) throw InputError(fmt::format("{}: is longer than 4 MiB, so it isn't a scene file; see docs/scene.md", name));
-  return parse_scene(text, path, overrides);
-}
+Problem read_scene(const std::string& path, const std::vector<std::string>& overrides) { return parse_scene(scene::read_text(path, "scene"), path, overrides); }
 
 }  // namespace corpuscle

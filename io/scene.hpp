@@ -20,6 +20,9 @@ Problem parse_scene(std::string_view text, const std::string& origin, const std:
 /// The merged scene with every default written out; parse_scene() gives the same Problem back.
 std::string to_toml(const Problem& problem);
 
+/// What differs between two scenes, one sentence a key: "run.strain = 10 there, 20 here"; `there` and `here` name the first and the second. Empty: both are the same.
+std::vector<std::string> scene_differences(const Problem& first, const Problem& second, std::string_view there, std::string_view here);
+
 /// Markdown tables of all keys, one per section, made from the table that drives the reader; docs/scene.md contains them verbatim.
 std::string scene_key_reference();
 

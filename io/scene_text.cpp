@@ -171,6 +171,28 @@ std::string to_toml(const Problem& problem) {
   return out;
 }
 
+std::vector<std::string> scene_differences(const Problem& first, const Problem& second, std::string_view there, std::string_view here) {
+  std::vector<std::string> differences;
+  if (first.cells.size() != second.cells.size())
+    differences.push_back(fmt::format("{} [[cells]] {}, {} {}", first.cells.size(), there, second.cells.size(), here));
+  Problem a = first, b = second;
+  CellSpec none;
+  const auto compare = [&](const scene::Key& key, const std::string& path, CellSpec& x, CellSpec& y) {
+    const std::string before = scene::value_text(key, key.field(a, x)), now = scene::value_text(key, key.field(b, y));
+    const auto shown = [](const std::string& value) { return value.empty() ? std::string("(not set)") : value; };
+    if (before != now) differences.push_back(fmt::format("{} = {} {}, {} {}", path, shown(before), there, shown(now), here));
+  };
+  for (const scene::Key& key : scene::keys()) {
+    if (!key.name.starts_with("cells.")) {
+      compare(key, std::string(key.name), none, none);
+      continue;
+    }
+    for (std::size_t i = 0; i < std::min(a.cells.size(), b.cells.size()); ++i)
+      compare(key, fmt::format("cells.{}{}", i, key.name.substr(std::string_view("cells.*").size())), a.cells[i], b.cells[i]);
+  }
+  return differences;
+}
+
 std::string scene_key_reference() {
   std::string out;
   std::string_view section;

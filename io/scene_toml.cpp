@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "core/error.hpp"
@@ -186,13 +188,24 @@ void drop_replaced(Document& document) {
 
 }  // namespace
 
-Document parse_document(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
-  Document document;
-  document.origin = one_line(origin, 300);
+std::string read_text(const std::string& path, std::string_view kind) {
+  constexpr std::size_t largest = 4u << 20;  // no scene is that long; keeps devices and data files from being read whole
+  const std::string name = one_line(path, 300);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw InputError(fmt::format("{}: there is no such {} file; check the path", name, kind));
+  if (std::filesystem::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a directory, not a {} file; name the .toml file in it", name, kind));
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: the {} file can't be opened for reading; check its permissions", name, kind));
+  std::string text(largest + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > largest) throw InputError(fmt::format("{}: is longer than 4 MiB, so it isn't a {} file; see docs/{}.md", name, kind, kind));
+  return text;
+}
+
+toml::table parse_table(std::string_view text, const std::string& origin, std::string_view expected) {
   const std::size_t zero = text.find('\0');
-  if (zero != std::string_view::npos || !valid_utf8(text)) {
-    throw InputError(fmt::format("{}: isn't a text file (TOML in UTF-8); a scene starts with tables such as [box] and [flow], see docs/scene.md", document.origin));
-  }
+  if (zero != std::string_view::npos || !valid_utf8(text)) throw InputError(fmt::format("{}: isn't a text file (TOML in UTF-8); {}", origin, expected));
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte-order mark of some editors
   if (const std::size_t stray = stray_character(text); stray != std::string_view::npos) {
     const std::string_view rest = text.substr(stray);
@@ -200,16 +213,22 @@ Document parse_document(std::string_view text, const std::string& origin, const 
     while (length < rest.size() && static_cast<unsigned char>(rest[length]) >> 6 == 2) ++length;
     throw InputError(fmt::format("{}:{}: isn't valid TOML: the character '{}' may only stand inside quotes or in a comment, "
                                  "and not where a line goes on after a backslash",
-                                 document.origin, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
+                                 origin, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n'), rest.substr(0, length)));
   }
   if (const std::ptrdiff_t line = too_deep_line(text); line > 0) {
-    throw InputError(fmt::format("{}:{}: has more than 500 dots in one line, which no key of a scene needs; correct the line", document.origin, line));
+    throw InputError(fmt::format("{}:{}: has more than 500 dots in one line, which no key of a scene needs; correct the line, or break a long list", origin, line));
   }
   try {
-    document.root = parse_toml(text);
+    return parse_toml(text);
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: isn't valid TOML at column {}: {}", document.origin, error.source().begin.line, error.source().begin.column, one_line(error.description(), 300)));
+    throw InputError(fmt::format("{}:{}: isn't valid TOML at column {}: {}", origin, error.source().begin.line, error.source().begin.column, one_line(error.description(), 300)));
   }
+}
+
+Document parse_document(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides) {
+  Document document;
+  document.origin = one_line(origin, 300);
+  document.root = parse_table(text, document.origin, "a scene starts with tables such as [box] and [flow], see docs/scene.md");
   if (document.root.empty()) {
     throw InputError(fmt::format("{}: the scene is empty; it needs at least [box] and [flow], see docs/scene.md", document.origin));
   }

@@ -1,4 +1,4 @@
-// TOML text and overrides to one table, and where each of its values came from. Only io/scene*.cpp include this (toml++ is slow to compile).
+// TOML text and overrides to one table, and where each of its values came from. Only io/scene*.cpp and io/sweep.cpp include this (toml++ is slow to compile).
 #pragma once
 // toml++ 3.3 asserts where it then copes: a date followed by a space and a character ("x = 1979-05-27 1") would abort a debug build.
 #define TOML_ASSERT(expression) static_cast<void>(0)
@@ -17,6 +17,13 @@ struct Document {
   std::string origin;                ///< named in messages
   std::set<std::string> overridden;  ///< display paths ("cells.0.count") set on the command line
 };
+
+/// The whole text of a small file. `kind` ("scene", "sweep") names it in messages and its page in docs/. @throws InputError when it can't be read or is no such file.
+std::string read_text(const std::string& path, std::string_view kind);
+
+/// @param expected what such a file looks like, for messages: "a scene starts with tables such as [box] and [flow], see docs/scene.md"
+/// @throws InputError for what isn't valid TOML
+toml::table parse_table(std::string_view text, const std::string& origin, std::string_view expected);
 
 /// @throws InputError for bad TOML, an empty scene, a malformed override or one whose key doesn't exist.
 Document parse_document(std::string_view text, const std::string& origin, const std::vector<std::string>& overrides);

@@ -1,13 +1,11 @@
 #include "io/summary.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
-#include "io/text_file.hpp"
+#include "io/durable.hpp"
 #include "physics/statistics/ellipsoid.hpp"
 
 namespace corpuscle {
@@ -184,7 +182,7 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["bytes_peak"] = summary.bytes_peak;
   for (const auto& part : summary.profile) json["profile"].push_back({{"operator", part.name}, {"calls", part.calls}, {"seconds", part.seconds}});
 
-  write_text_file(path, json.dump(2) + "\n", "the summary");
+  replace_file(path, json.dump(2) + "\n", "the summary");
 }
 
 }  // namespace corpuscle

@@ -1,0 +1,272 @@
+#include "io/sweep.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "core/error.hpp"
+#include "io/scene_keys.hpp"
+#include "io/scene_toml.hpp"
+
+namespace corpuscle {
+namespace {
+
+using scene::one_line;
+using scene::shown;
+
+/// A value of the sweep file and where it stands.
+struct Value {
+  std::string text;  ///< TOML and JSON
+  std::vector<std::string> parts;  ///< of a list
+};
+
+/// 2.8e-3 and 0.0028 are one value, "1.0" and 1 too; texts are compared as they are.
+bool same_value(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const auto number = [](const std::string& text) -> std::optional<double> {
+    if (text.empty() || std::string_view("+-.0123456789").find(text[0]) == std::string_view::npos) return {};
+    std::size_t end = 0;
+    const double value = std::stod(text, &end);
+    return end == text.size() ? std::optional(value) : std::nullopt;
+  };
+  const auto x = number(a), y = number(b);
+  return x && y && *x == *y;
+}
+
+const Override* find(const std::vector<Override>& overrides, const std::string& key) {
+  const auto found = std::find_if(overrides.begin(), overrides.end(), [&](const Override& o) { return o.key == key; });
+  return found == overrides.end() ? nullptr : &*found;
+}
+
+struct Axis {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+/// [[where]]
+struct Rule {
+  std::vector<std::pair<std::string, Value>> match;
+  std::vector<Override> set;
+  std::ptrdiff_t line = 0;
+};
+
+class SweepReader {
+ public:
+  SweepReader(std::string_view text, const std::string& origin)
+      : origin_(one_line(origin, 300)), path_(origin), root_(scene::parse_table(text, origin_, "a sweep starts with scene = \"base.toml\" and [[axis]], see docs/sweep.md")) {}
+
+  Sweep read() {
+    static constexpr std::array<std::string_view, 4> known{"scene", "axis", "also", "where"};
+    allow_only(root_, known, "a sweep");
+    Sweep sweep;
+    const toml::node* scene = root_.get("scene");
+    if (scene == nullptr) throw InputError(fmt::format("{}: `scene` is missing: name the scene that varies, for example scene = \"base.toml\"", origin_));
+    if (!scene->is_string() || scene->as_string()->get().empty()) fail(*scene, fmt::format("scene = {} must be the name of a scene file, beside this one", shown(*scene)));
+    sweep.scene = (std::filesystem::path(path_).parent_path() / scene->as_string()->get()).lexically_normal().string();
+    for (const toml::table* table : tables("axis")) read_axis(*table);
+    given_ = matrix();
+    for (const toml::table* table : tables("also")) read_also(*table);
+    if (given_.empty()) throw InputError(fmt::format("{}: has no points: write at least one [[axis]] with key and values, or [[also]], see docs/sweep.md", origin_));
+    for (const toml::table* table : tables("where")) read_rule(*table);
+
+    const std::vector<std::string> names = sweep_names(given_);
+    check_names(names);
+    for (std::size_t i = 0; i < given_.size(); ++i) sweep.points.push_back({names[i], given_[i]});
+    for (const Rule& rule : rules_) apply(rule, sweep);
+    return sweep;
+  }
+
+ private:
+  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { fail(node.source().begin.line, problem); }
+  [[noreturn]] void fail(std::ptrdiff_t line, const std::string& problem) const {
+    throw InputError(line == 0 ? fmt::format("{}: {}", origin_, problem) : fmt::format("{}:{}: {}", origin_, line, problem));
+  }
+
+  void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const {
+    for (const auto& [name, node] : table)
+      if (std::find(known.begin(), known.end(), name.str()) == known.end())
+        fail(node, fmt::format("{} isn't a key of {}; allowed: {}; the nearest is {}", one_line(name.str()), of, fmt::join(known, ", "), scene::nearest(name.str(), known)));
+  }
+
+  std::vector<const toml::table*> tables(const char* name) const {
+    std::vector<const toml::table*> found;
+    const toml::node* node = root_.get(name);
+    if (node == nullptr) return found;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) fail(*node, fmt::format("{} must be a list of tables: write [[{}]] with two brackets for each", name, name));
+    for (const toml::node& entry : *list) {
+      if (!entry.is_table()) fail(entry, fmt::format("{} = {} must be a table: write [[{}]] with two brackets for each", name, shown(entry), name));
+      found.push_back(entry.as_table());
+    }
+    return found;
+  }
+
+  void require_key(const std::string& key, const toml::node& node) const {
+    const std::string pattern = scene::pattern_of(key);
+    if (scene::find_key(pattern) != nullptr) return;
+    if (pattern == "cells" || scene::is_section(pattern)) fail(node, fmt::format("{} is a table of a scene: give a key in it", one_line(key, 120)));
+    fail(node, fmt::format("{} isn't a key of a scene; the nearest known key is {}", one_line(key, 120), scene::nearest_key(pattern)));
+  }
+
+  Value value(const std::string& key, const toml::node& node) const {
+    Value result;
+    if (const toml::array* list = node.as_array()) {
+      for (const toml::node& part : *list) {
+        const Value inner = value(key, part);
+        if (!inner.parts.empty()) fail(node, fmt::format("{} = {} is a list of lists, which no key takes", one_line(key, 120), shown(node)));
+        result.parts.push_back(inner.text);
+      }
+      result.text = fmt::format("[{}]", fmt::join(result.parts, ", "));
+    } else if (const auto* text = node.as_string()) result.text = scene::quote(text->get());
+    else if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get())) result.text = fmt::format("{}", number->get());
+    else if (const auto* whole = node.as_integer()) result.text = fmt::format("{}", whole->get());
+    else if (const auto* choice = node.as_boolean()) result.text = choice->get() ? "true" : "false";
+    else fail(node, fmt::format("{} = {} must be a number, a string, true, false or a list of them", one_line(key, 120), shown(node)));
+    return result;
+  }
+
+  /// The overrides in a table; `a.b = 1`, `"a.b" = 1` and `a = { b = 1 }` are the same.
+  void collect(const toml::table& table, const std::string& prefix, std::vector<std::pair<std::string, Value>>& into) const {
+    for (const auto& [name, node] : table) {
+      const std::string key = prefix + std::string(name.str());
+      if (const toml::table* inner = node.as_table()) {
+        collect(*inner, key + ".", into);
+        continue;
+      }
+      require_key(key, node);
+      if (std::any_of(into.begin(), into.end(), [&](const auto& other) { return other.first == key; })) fail(node, fmt::format("{} is given twice", key));
+      into.emplace_back(key, value(key, node));
+    }
+  }
+  std::vector<Override> overrides(const toml::table& table) const {
+    std::vector<std::pair<std::string, Value>> values;
+    collect(table, "", values);
+    std::vector<Override> list;
+    for (auto& [key, v] : values) list.push_back({key, v.text});
+    return list;
+  }
+
+  void read_axis(const toml::table& table) {
+    static constexpr std::array<std::string_view, 2> known{"key", "values"};
+    allow_only(table, known, "[[axis]]");
+    const toml::node *key = table.get("key"), *values = table.get("values");
+    if (key == nullptr || !key->is_string()) fail(key == nullptr ? table : *key, "an [[axis]] needs key = \"...\", a key of the scene such as \"flow.capillary_number\"");
+    Axis axis{key->as_string()->get(), {}};
+    require_key(axis.key, *key);
+    for (const Axis& other : axes_)
+      if (other.key == axis.key) fail(*key, fmt::format("{} has an axis already: put all its values into one", axis.key));
+    if (values == nullptr || !values->is_array() || values->as_array()->empty())
+      fail(values == nullptr ? table : *values, fmt::format("the axis of {} needs values = [...], a list with at least one value", axis.key));
+    for (const toml::node& node : *values->as_array()) {
+      const std::string text = value(axis.key, node).text;
+      if (std::any_of(axis.values.begin(), axis.values.end(), [&](const std::string& other) { return same_value(other, text); }))
+        fail(node, fmt::format("the axis of {} has the value {} twice", axis.key, one_line(text)));
+      axis.values.push_back(text);
+    }
+    axes_.push_back(std::move(axis));
+  }
+
+  std::vector<std::vector<Override>> matrix() const {
+    if (axes_.empty()) return {};
+    std::vector<std::vector<Override>> points{{}};
+    for (const Axis& axis : axes_) {
+      if (points.size() * axis.values.size() > most_sweep_points)
+        throw InputError(fmt::format("{}: the axes give more than {} points: use fewer values", origin_, most_sweep_points));
+      std::vector<std::vector<Override>> more;
+      for (const auto& point : points)
+        for (const std::string& text : axis.values) {
+          more.push_back(point);
+          more.back().push_back({axis.key, text});
+        }
+      points = std::move(more);
+    }
+    return points;
+  }
+
+  void read_also(const toml::table& table) {
+    if (given_.size() >= most_sweep_points) fail(table, fmt::format("more than {} points: use fewer", most_sweep_points));
+    given_.push_back(overrides(table));
+    // In the order of the axes, so that names read alike.
+    std::stable_sort(given_.back().begin(), given_.back().end(), [&](const Override& a, const Override& b) { return rank(a.key) < rank(b.key); });
+  }
+  std::size_t rank(const std::string& key) const {
+    return static_cast<std::size_t>(std::find_if(axes_.begin(), axes_.end(), [&](const Axis& axis) { return axis.key == key; }) - axes_.begin());
+  }
+
+  void read_rule(const toml::table& table) {
+    static constexpr std::array<std::string_view, 2> known{"match", "set"};
+    allow_only(table, known, "[[where]]");
+    const toml::node *match = table.get("match"), *set = table.get("set");
+    if (match == nullptr || !match->is_table() || match->as_table()->empty())
+      fail(table, "a [[where]] needs match = { ... } with the values of the points that it is for, for example match = { \"flow.capillary_number\" = 0.0028 }");
+    if (set == nullptr || !set->is_table() || set->as_table()->empty())
+      fail(table, "a [[where]] needs set = { ... } with the overrides of these points, for example set = { \"run.strain\" = 20 }");
+    Rule rule;
+    rule.line = table.source().begin.line;
+    collect(*match->as_table(), "", rule.match);
+    rule.set = overrides(*set->as_table());
+    for (const Override& o : rule.set)
+      if (rank(o.key) < axes_.size()) fail(*set, fmt::format("[[where]] can't set {}, which has an axis: write the points with another value as [[also]]", o.key));
+    rules_.push_back(std::move(rule));
+  }
+
+  /// What a point gives itself wins over the rules; a later rule over an earlier one.
+  void apply(const Rule& rule, Sweep& sweep) const {
+    bool any = false;
+    for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+      const bool matches = std::all_of(rule.match.begin(), rule.match.end(), [&](const auto& wanted) {
+        const Override* own = find(given_[i], wanted.first);
+        const auto& choices = wanted.second.parts;
+        return own != nullptr && (same_value(own->value, wanted.second.text) ||
+                                  std::any_of(choices.begin(), choices.end(), [&](const std::string& choice) { return same_value(own->value, choice); }));
+      });
+      any = any || matches;
+      if (!matches) continue;
+      for (const Override& o : rule.set) {
+        if (find(given_[i], o.key) != nullptr) continue;
+        auto& overrides = sweep.points[i].overrides;
+        const auto earlier = std::find_if(overrides.begin(), overrides.end(), [&](const Override& other) { return other.key == o.key; });
+        if (earlier == overrides.end()) overrides.push_back(o);
+        else *earlier = o;
+      }
+    }
+    if (!any) fail(rule.line, "this [[where]] matches no point: match compares with what [[axis]] and [[also]] give, all of it must agree");
+  }
+
+  void check_names(const std::vector<std::string>& names) const {
+    std::map<std::string, std::size_t> seen;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].size() > 200) throw InputError(fmt::format("{}: point {} would need a directory name of {} characters ({}): use shorter texts or fewer keys", origin_,
+                                                              i + 1, names[i].size(), one_line(names[i])));
+      const auto [first, is_new] = seen.emplace(names[i], i);
+      if (is_new) continue;
+      const bool same = given_[first->second].size() == given_[i].size() &&
+                        std::all_of(given_[i].begin(), given_[i].end(), [&](const Override& o) {
+                          const Override* other = find(given_[first->second], o.key);
+                          return other != nullptr && same_value(other->value, o.value);
+                        });
+      if (same) throw InputError(fmt::format("{}: the point {} is there twice: leave out the [[also]] that repeats it", origin_, names[i]));
+      throw InputError(fmt::format("{}: two points would have the directory {}: choose texts that differ in letters or digits", origin_, names[i]));
+    }
+  }
+
+  std::string origin_, path_;
+  toml::table root_;
+  std::vector<Axis> axes_;
+  std::vector<std::vector<Override>> given_;  ///< by axes and [[also]], of each point
+  std::vector<Rule> rules_;
+};
+
+}  // namespace
+
+Sweep parse_sweep(std::string_view text, const std::string& origin) { return SweepReader(text, origin).read(); }
+
+Sweep read_sweep(const std::string& path) { return parse_sweep(scene::read_text(path, "sweep"), path); }
+
+}  // namespace corpuscle

@@ -1,0 +1,40 @@
+// Sweep files: a base scene and the values that vary (docs/sweep.md is the reference). What they stand for is a list of points, each the scene with overrides.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corpuscle {
+
+/// One change of a scene, as `run --set KEY=VALUE`.
+struct Override {
+  std::string key;    ///< "cells.0.count"
+  std::string value;  ///< in TOML syntax; a sweep allows numbers, strings, true, false and lists of them, whose text is the same in JSON
+  std::string text() const { return key + "=" + value; }
+  bool operator==(const Override&) const = default;
+};
+
+/// One scene of a sweep.
+struct SweepPoint {
+  std::string name;                 ///< for its directory: letters, digits, `.`, `-`, `_`
+  std::vector<Override> overrides;  ///< of axes and [[also]] first, then of [[where]]
+};
+
+struct Sweep {
+  std::string scene;               ///< path of the base scene
+  std::vector<SweepPoint> points;  ///< the matrix of the axes, the last one running fastest, then [[also]]
+};
+
+/// Most points of a sweep.
+inline constexpr std::size_t most_sweep_points = 10'000;
+
+/// @throws InputError with one sentence: where, what is wrong, what is allowed. The scenes themselves are not looked at.
+Sweep read_sweep(const std::string& path);
+/// The same for a sweep in memory; `origin` names it in messages, and the scene is beside it.
+Sweep parse_sweep(std::string_view text, const std::string& origin);
+
+/// Readable names of points from the values that vary among them: "phi0.45-Ca0.0028". `given` has the overrides of each point.
+/// Keys appear in the order in which they come first; "base" where nothing varies. Names can coincide, for example when two strings differ in a blank only.
+std::vector<std::string> sweep_names(const std::vector<std::vector<Override>>& given);
+
+}  // namespace corpuscle
