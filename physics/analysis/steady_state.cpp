@@ -54,6 +54,7 @@ SteadyState::SteadyState(const RunRecord& run, const AnalysisOptions& choices, A
   if (options.longest_lag > steady_strain) {
     throw InputError(fmt::format("--longest-lag {:g} is beyond the steady part of the run, {:.4g} strains: give less, or run longer", options.longest_lag, steady_strain));
   }
+  analysis.settings.asked = options;
   analysis.settings.wall_layer = record.walls ? options.wall_layer : 0;
   analysis.settings.mean_flow = options.mean_flow;
   analysis.settings.discarded_strain = analysis.start_up_strain = std::isnan(interval) ? 0 : interval * static_cast<double>(first);

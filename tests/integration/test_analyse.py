@@ -230,6 +230,67 @@ def check_running(program, work):
     assert found["estimates"]["relative_viscosity"]["value"] > 1 and not any("writing here" in text for text in found["warnings"])
 
 
+def check_sweep(program, folder, work):
+    """A made-up sweep: copies of a run with other capillary numbers, one waiting, one damaged, one failed; analysed, again, and with other settings."""
+    sweep = work / "sweep"
+    sweep.mkdir()
+    names = ["Ca0.1", "Ca0.05", "Ca0.02", "Ca0.01", "broken", "waiting"]
+    states = ["finished", "finished", "finished", "failed", "finished", "waiting"]
+    (sweep / "sweep.json").write_text(json.dumps({"format": "corpuscle-sweep-1", "scene": "scene.toml", "runs": [
+        {"name": name, "directory": name, "overrides": {}, "state": state, "exit_code": 3 if state == "failed" else None,
+         "message": "a guard" if state == "failed" else ""} for name, state in zip(names, states)]}))
+    for name in names[:4]:
+        (sweep / name).mkdir()
+        shutil.copy(folder / "run.h5", sweep / name)
+        with h5py.File(sweep / name / "run.h5", "r+") as file:
+            factor = 0.1 / float(name[2:])
+            file["lattice"].attrs["capillary_number"] = float(name[2:])
+            file["cells/stresslet"][...] *= factor**0.5
+    (sweep / "broken").mkdir()
+    (sweep / "broken/run.h5").write_text("nothing")
+    options = ("--wall-layer", "2", "--discard", "1")
+    log = run(program, "analyse", sweep, *options).stdout
+    assert log.count(" analysed\n") == 4, log
+    found = json.loads((sweep / "analysis.json").read_text())
+    assert [entry["directory"] for entry in found["runs"]] == names[:4]
+    for text, words in (("broken", "left out"), ("waiting", "no run.h5"), ("Ca0.01", "a guard")):
+        assert any(text in warning and words in warning for warning in found["warnings"]), (text, found["warnings"])
+    single = json.loads((sweep / "Ca0.02/analysis.json").read_text())["estimates"]["relative_viscosity"]
+    assert found["runs"][2]["estimates"]["relative_viscosity"]["value"] == single["value"] > 1
+    curve, = found["flow_curves"]
+    assert curve["runs"] == ["Ca0.01", "Ca0.02", "Ca0.05", "Ca0.1"]
+    capillary = np.array([entry["run"]["capillary_number"] for entry in found["runs"]])
+    viscosity, error = (np.array([entry["estimates"]["relative_viscosity"][part] for entry in found["runs"]]) for part in ("value", "error"))
+    slope, _ = np.polyfit(np.log(capillary), np.log(viscosity), 1, w=viscosity / error)
+    close(curve["shear_thinning"]["parameters"]["exponent"], -slope, 1e-6)
+    assert curve["yield_stress"]["parameters"]["exponent"]["value"] is not None or curve["yield_stress"]["reason"]
+    with h5py.File(sweep / "analysis.h5") as file:
+        assert np.allclose(file["estimates/relative_viscosity/value"], viscosity) and len(file["runs/directory"]) == 4
+    lines = (sweep / "analysis.csv").read_text().splitlines()
+    assert len(lines) == 5 and lines[0].startswith("directory,capillary_number")
+    assert "Flow curves" in (sweep / "analysis.md").read_text()
+
+    # Nothing is done twice; what has changed, or is asked for differently, is.
+    times = {name: (sweep / name / "analysis.json").stat().st_mtime_ns for name in names[:4]}
+    (sweep / "Ca0.05/run.h5").touch()
+    log = run(program, "analyse", sweep, *options).stdout
+    assert log.count("was analysed before") == 3, log
+    changed = [name for name in names[:4] if (sweep / name / "analysis.json").stat().st_mtime_ns != times[name]]
+    assert changed == ["Ca0.05"], changed
+    assert "was analysed before" not in run(program, "analyse", sweep, "--wall-layer", "1").stdout
+
+    only = work / "only"
+    only.mkdir()
+    (only / "sweep.json").write_text((sweep / "sweep.json").read_text())
+    assert "no run of the sweep can be analysed" in run(program, "analyse", only, code=2).stderr
+    (only / "sweep.json").write_text("{")
+    assert "sweep.json" in run(program, "analyse", only, code=2).stderr
+    for name in ("run.json", "kept.json"):
+        (sweep / "run.h5").write_text("data")
+        (sweep / "kept.csv").write_text("data")
+        assert "would be lost" in run(program, "analyse", sweep, "--output", sweep / name, code=2).stderr
+
+
 def main():
     program = sys.argv[1]
     with tempfile.TemporaryDirectory() as name:
@@ -242,6 +303,7 @@ def main():
         check_bad_input(program, work / "a", work)
         check_scenes(program, work)
         check_running(program, work)
+        check_sweep(program, work / "a", work)
     print("all good")
 
 

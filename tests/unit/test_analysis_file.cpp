@@ -96,9 +96,12 @@ TEST_CASE("analysis.md: digits of a value with its error", "[io][analysis]") {
 
 TEST_CASE("analysis.json replaces nothing but an analysis", "[io][analysis]") {
   const ScratchFolder folder;
-  CHECK_NOTHROW(require_replaceable(folder / "new.json", analysis_format));
+  CHECK_NOTHROW(require_replaceable(folder / "new.json", analysis_format, {".md"}));
   std::ofstream(folder / "analysis.json") << R"({"format": "corpuscle-analysis-1"})";
-  CHECK_NOTHROW(require_replaceable(folder / "analysis.json", analysis_format));
+  CHECK_NOTHROW(require_replaceable(folder / "analysis.json", analysis_format, {".md"}));
   std::ofstream(folder / "summary.json") << R"({"capillary_number": 1})";
-  CHECK(complaint_lacks([&] { require_replaceable(folder / "summary.json", analysis_format); }, {"summary.json", "would be lost"}) == "");
+  CHECK(complaint_lacks([&] { require_replaceable(folder / "summary.json", analysis_format, {}); }, {"summary.json", "would be lost"}) == "");
+  std::ofstream(folder / "run.h5") << "data";
+  CHECK_NOTHROW(require_replaceable(folder / "run.json", analysis_format, {".md"}));
+  CHECK(complaint_lacks([&] { require_replaceable(folder / "run.json", analysis_format, {".md", ".h5"}); }, {"run.h5", "would be lost"}) == "");
 }
