@@ -75,7 +75,9 @@ int analyse_sweep(const fs::path& directory, const fs::path& output, const Sweep
       std::fflush(stdout);
       runs.push_back({run.name, read_analysis(place / "analysis.json")});
       runs.back().analysis.erase("curves");  // thousands of runs have megabytes of them
-      if (run.state != RunState::finished) warnings.push_back(fmt::format("{}: {}, analysed as far as it is{}", run.name, name_of(run.state), run.message.empty() ? "" : " (" + run.message + ")"));
+      runs.back().fits = run.state != RunState::failed;
+      if (run.state == RunState::failed) warnings.push_back(fmt::format("{}: failed ({}): analysed as far as it came, left out of the fits", run.name, run.message));
+      else if (run.state != RunState::finished) warnings.push_back(fmt::format("{}: {}, analysed as far as it is", run.name, name_of(run.state)));
     } catch (const InputError& error) {
       warnings.push_back(fmt::format("{}: left out: {}", run.name, error.what()));
     }

@@ -112,7 +112,8 @@ SweepAnalysis combine(std::vector<AnalysedRun> runs, std::vector<std::string> wa
   std::vector<analysis::RunOutcome> outcomes;
   for (const auto& run : runs) {
     try {
-      outcomes.push_back(outcome_of(run));
+      const auto outcome = outcome_of(run);
+      if (run.fits) outcomes.push_back(outcome);
     } catch (const nlohmann::json::exception& error) {
       throw InputError(fmt::format("{}/analysis.json can't be used ({}): remove it, and the run is analysed anew", run.directory, error.what()));
     }

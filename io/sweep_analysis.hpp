@@ -15,6 +15,7 @@ inline constexpr const char* sweep_analysis_format = "corpuscle-sweep-analysis-1
 struct AnalysedRun {
   std::string directory;  ///< relative to that of the sweep
   nlohmann::ordered_json analysis;
+  bool fits = true;  ///< it takes part in the fits over all runs; one that failed doesn't
 };
 
 struct SweepAnalysis {
