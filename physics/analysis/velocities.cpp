@@ -26,14 +26,15 @@ struct FlowProfile {
   MatrixXd about_uniform;  // [times][cells]
   BlockedCurve rest;
   double uniform_rate = 0;
+  std::vector<double> squares;  // of `about_uniform`, mean over the cells
 };
 
 FlowProfile flow_of(const SteadyState& state) {
   FlowProfile flow;
   flow.uniform_rate = state.record.flow == FlowOf::shear ? state.record.shear_rate : 0;
   flow.about_uniform = statistics::fluctuations(state.heights, state.component(CellQuantity::velocity, 0), flow.uniform_rate, state.height() / 2);
-  const auto blocks = state.blocks(SteadyState::mean_of_cells(flow.about_uniform.cwiseAbs2()));
-  flow.rest = statistics::profile(state.heights, flow.about_uniform, layers_of(state, blocks));
+  flow.squares = SteadyState::mean_of_cells(flow.about_uniform.cwiseAbs2());
+  flow.rest = statistics::profile(state.heights, flow.about_uniform, layers_of(state, flow.squares));
   return flow;
 }
 
@@ -61,7 +62,7 @@ Estimate slope_of(const SteadyState& state, const MatrixXd& velocities, Index bl
 
 void add_mean_flow(const SteadyState& state, const FlowProfile& flow, Analysis& analysis) {
   Curve& profile = analysis.curve("profile_velocity");
-  profile = profile_curve(state, flow.rest, state.velocity_unit());
+  profile = profile_curve(state, flow.rest, state.velocity_unit(), flow.squares);
   profile.value.array() += flow.uniform_rate / state.record.shear_rate * (profile.x.array() - state.height() / (2 * state.record.radius));
   Estimate& slope = analysis.estimate("shear_rate_bulk");
   if (state.record.flow != FlowOf::shear) {
@@ -179,8 +180,10 @@ void add_velocities(const SteadyState& state, Analysis& analysis) {
                                               "displacements contain it", name, moments.mean.value, moments.mean.error));
     }
     analysis.curve("profile_variance_" + name) =
-        profile_curve(state, statistics::profile(state.heights, all.cwiseAbs2(), layers_of(state, state.blocks(squares))), 1);
+        profile_curve(state, statistics::profile(state.heights, all.cwiseAbs2(), layers_of(state, squares)), 1, squares);
     add_density(in_bulk, name, analysis);
+    state.judge(analysis.curve("pdf_velocity_" + name), squares);
+    state.judge(analysis.fit("pdf_velocity_" + name + "_core_and_tails").fit, squares);
     add_correlations(state, all, in_bulk, name, analysis);
   }
 }
