@@ -60,6 +60,10 @@ Json fit_json(const statistics::Fit& fit) {
   return json;
 }
 
+Json asked_json(const analysis::AnalysisOptions& options) {
+  return {{"wall_layer", options.wall_layer}, {"mean_flow", name_of(options.mean_flow)}, {"discard", number(options.discard)}, {"longest_lag", number(options.longest_lag)}};
+}
+
 Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& analysis) {
   const auto& settings = analysis.settings;
   Json json;
@@ -84,7 +88,8 @@ Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& 
                       {"discarded_strain", number(settings.discarded_strain)},
                       {"longest_lag", number(settings.longest_lag)},
                       {"contact_distance", number(settings.contact_distance)},
-                      {"contact_distance_from", settings.contact_distance_from}};
+                      {"contact_distance_from", settings.contact_distance_from},
+                      {"asked", asked_json(settings.asked)}};
   json["equilibration"] = {{"strain", number(analysis.start_up_strain)}};
   json["equilibration"].update(trust(analysis.start_up.converged, analysis.start_up.reason));
   json["estimates"] = json["curves"] = json["fits"] = json["tensors"] = Json::object();
@@ -108,13 +113,21 @@ Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& 
   return json;
 }
 
-void require_replaceable(const std::filesystem::path& path, const std::string& format) {
+void require_replaceable(const std::filesystem::path& path, const std::string& format, const std::vector<std::string>& other_endings) {
+  const auto refuse = [](const std::filesystem::path& lost) {
+    throw InputError(fmt::format("{} is there and is no result of corpuscle analyse: it would be lost; remove it, or give another --output", lost.string()));
+  };
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return;
-  std::ifstream file(path);
-  const auto json = nlohmann::json::parse(file, nullptr, false);
-  if (json.is_object() && json.contains("format") && json["format"] == format) return;
-  throw InputError(fmt::format("{} is there and is no result of corpuscle analyse: it would be lost; remove it, or give another --output", path.string()));
+  if (std::filesystem::exists(path, ignored)) {
+    std::ifstream file(path);
+    const auto json = nlohmann::json::parse(file, nullptr, false);
+    if (!json.is_object() || !json.contains("format") || json["format"] != format) refuse(path);
+    return;
+  }
+  for (const auto& ending : other_endings) {
+    const auto other = std::filesystem::path(path).replace_extension(ending);
+    if (std::filesystem::exists(other, ignored)) refuse(other);
+  }
 }
 
 }  // namespace corpuscle

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "physics/analysis/record.hpp"
 #include "physics/analysis/results.hpp"
@@ -17,6 +18,9 @@ nlohmann::ordered_json analysis_json(const analysis::RunRecord& record, const an
 /// The page: numbers with errors, what isn't converged and why, fits, warnings.
 std::string analysis_page(const analysis::RunRecord& record, const analysis::Analysis& analysis);
 
+/// What the user chose, as `settings.asked` of the file: to see whether an analysis would come out the same.
+nlohmann::ordered_json asked_json(const analysis::AnalysisOptions& options);
+
 /// Parts that the analysis of a sweep shares.
 nlohmann::ordered_json fit_json(const statistics::Fit& fit);
 /// "4.690 ± 0.046": the error with two digits, the value to the same place; without an error six digits; "-" for NaN.
@@ -24,7 +28,7 @@ std::string with_error(double value, double error);
 /// Texts under the heading "Warnings", one a line; nothing without any.
 std::string warnings_page(const std::vector<std::string>& warnings);
 
-/// @throws InputError when there is a file of this name that is no JSON with one of these formats: it would be lost.
-void require_replaceable(const std::filesystem::path& path, const std::string& format);
+/// @throws InputError when `path` is there and is no JSON of this format, or isn't there while a file with one of the other endings is: it would be lost.
+void require_replaceable(const std::filesystem::path& path, const std::string& format, const std::vector<std::string>& other_endings);
 
 }  // namespace corpuscle

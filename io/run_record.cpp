@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/error.hpp"
@@ -119,7 +121,8 @@ std::vector<double> column_of(const hdf5::File& file, const std::string& name, c
     return series;
   }
   const auto data = file.read_rows<double>(name, 0, rows);
-  const std::size_t width = rows > 0 ? data.values.size() / rows : 0;
+  if (rows == 0) return series;
+  const std::size_t width = data.values.size() / rows;
   if (column >= width) throw OutputError(fmt::format("{}: {} has {} numbers a sample", record.directory, name, width));
   for (std::size_t i = 0; i < grid.rows.size(); ++i) series[static_cast<std::size_t>(grid.times[i])] = data.values[grid.rows[i] * width + column];
   return series;
@@ -215,6 +218,12 @@ RunRecord read(const hdf5::File& file, const fs::path& directory) {
   return record;
 }
 
+bool stopped_by_guard(const fs::path& directory) {
+  std::ifstream file(directory / "summary.json");
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  return json.is_object() && json.contains("stopped_by") && json["stopped_by"] == "guard";
+}
+
 }  // namespace
 
 RunRecord read_run_record(const fs::path& directory) {
@@ -233,6 +242,7 @@ RunRecord read_run_record(const fs::path& directory) {
     } else if (fs::exists(hdf5::journal_path(path), ignored)) {
       record.warnings.push_back("a write to run.h5 was cut off by a kill: corpuscle check --recover finishes it, or takes it back");
     }
+    if (stopped_by_guard(directory)) record.warnings.push_back("a guard stopped the run: its last samples may be unphysical");
     return record;
   } catch (const OutputError& error) {
     std::string text = error.what();

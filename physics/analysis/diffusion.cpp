@@ -26,16 +26,10 @@ Estimate exponent_between(const BlockedCurve& msd, double from, double to) {
   for (Index i = 0; i < msd.points(); ++i) points += msd.x[i] > 0 && msd.x[i] >= from / slack && msd.x[i] <= to * slack ? 1 : 0;
   if (!msd.reason.empty()) return {.reason = msd.reason};
   if (points < 3) return {.reason = fmt::format("{} lags between {:.3g} and {:.3g} strains are too few for an exponent (at least 3; output.series_every)", points, from, to)};
-  Estimate result = statistics::estimate_from(msd, [&](const VectorXd& y) {
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (Index i = 0; i < msd.points(); ++i) {
-      if (!(msd.x[i] > 0 && msd.x[i] >= from / slack && msd.x[i] <= to * slack) || !(y[i] > 0)) continue;
-      const double u = std::log(msd.x[i]), v = std::log(y[i]);
-      n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v;
-    }
-    return n < 3 ? statistics::not_a_number : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  return statistics::estimate_from(msd, [&](const VectorXd& y) {
+    const statistics::FitData window{.x = msd.x, .y = (msd.x.array() >= from / slack && msd.x.array() <= to * slack).select(y, statistics::not_a_number), .error = {}};
+    return statistics::fit_power_law(window).parameters[1];
   });
-  return result;
 }
 
 // The straight line whose slope is twice the diffusion coefficient, over the window that `diffusion_from_msd` takes.

@@ -1,6 +1,5 @@
 // Gap between the cells from the balance of dissipation.
-#include <cmath>
-
+#include "physics/analysis/flow_curves.hpp"
 #include "physics/analysis/groups.hpp"
 #include "physics/statistics/dissipation.hpp"
 
@@ -12,14 +11,7 @@ void add_gap(const SteadyState& state, Analysis& analysis) {
   if (missing.empty()) missing = state.stress_missing;
   if (!missing.empty()) return analysis.refuse(Group::gap, missing);
   // Velocities in shear_rate r: the gap comes out in radii.
-  statistics::Estimate sum{.value = 0, .error = 0, .effective_samples = std::numeric_limits<double>::infinity(), .converged = true};
-  for (const char* axis : {"x", "y", "z"}) {
-    const auto& variance = analysis.estimate(std::string("velocity_variance_") + axis);
-    sum.value += variance.value;
-    sum.error += variance.error;  // the three fluctuate together: not in squares
-    sum.effective_samples = std::min(sum.effective_samples, variance.effective_samples);
-    if (!variance.converged) doubt(sum, variance.reason);
-  }
+  const auto sum = total_variance({analysis.estimate("velocity_variance_x"), analysis.estimate("velocity_variance_y"), analysis.estimate("velocity_variance_z")});
   const auto gap = statistics::gap_size({.volume_fraction = analysis.estimate("phi_bulk").value,
                                          .shear_rate = 1,
                                          .velocity_variance = sum,

@@ -14,9 +14,9 @@ void add_diffusion(const SteadyState& state, Analysis& analysis);     ///< displ
 void add_stresslets(const SteadyState& state, Analysis& analysis);    ///< stress of single cells
 void add_shapes(const SteadyState& state, Analysis& analysis);        ///< deformation, orientation, motion
 
-/// Layers of z across the box, half a radius thick (thicker where that would be more than 150).
-statistics::ProfileOptions layers_of(const SteadyState& state, Eigen::Index blocks);
-/// x in radii, values and errors divided by `unit`, of a profile in lattice units.
-statistics::Curve profile_curve(const SteadyState& state, const statistics::BlockedCurve& profile, double unit);
+/// Layers of z across the box, half a radius thick (thicker where that would be more than 150). `series`, the mean over the cells, tells how long blocks must be.
+statistics::ProfileOptions layers_of(const SteadyState& state, const std::vector<double>& series);
+/// x in radii, values and errors divided by `unit`, of a profile in lattice units; doubted where the steady part is too short for `series`.
+statistics::Curve profile_curve(const SteadyState& state, const statistics::BlockedCurve& profile, double unit, const std::vector<double>& series);
 
 }  // namespace corpuscle::analysis

@@ -65,6 +65,7 @@ struct AnalysisSettings {
   double longest_lag = 0;
   double contact_distance = statistics::not_a_number;  ///< radii
   std::string contact_distance_from;                   ///< how it was chosen
+  AnalysisOptions asked;
 };
 
 class Analysis {

@@ -82,7 +82,7 @@ void add_shapes(const SteadyState& state, Analysis& analysis) {
   MatrixXd deformation = cells.deformation.cwiseProduct(state.inside);
   const auto mean = SteadyState::mean_of_cells(deformation);
   analysis.estimate("deformation") = statistics::mean_estimate(mean, state.interval);
-  analysis.curve("profile_deformation") = profile_curve(state, statistics::profile(state.heights, cells.deformation, layers_of(state, state.blocks(mean))), 1);
+  analysis.curve("profile_deformation") = profile_curve(state, statistics::profile(state.heights, cells.deformation, layers_of(state, mean)), 1, mean);
 
   // Angles and axes turn with their cosines: the slower of the two tells how long a block has to be.
   cells.inclination = cells.inclination.cwiseProduct(state.inside);

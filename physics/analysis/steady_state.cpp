@@ -54,6 +54,7 @@ SteadyState::SteadyState(const RunRecord& run, const AnalysisOptions& choices, A
   if (options.longest_lag > steady_strain) {
     throw InputError(fmt::format("--longest-lag {:g} is beyond the steady part of the run, {:.4g} strains: give less, or run longer", options.longest_lag, steady_strain));
   }
+  analysis.settings.asked = options;
   analysis.settings.wall_layer = record.walls ? options.wall_layer : 0;
   analysis.settings.mean_flow = options.mean_flow;
   analysis.settings.discarded_strain = analysis.start_up_strain = std::isnan(interval) ? 0 : interval * static_cast<double>(first);
@@ -178,14 +179,17 @@ std::vector<double> SteadyState::mean_of_cells(const MatrixXd& values) {
   return means;
 }
 
-void SteadyState::judge(statistics::Estimate& estimate, const std::vector<double>& series) const {
+std::string SteadyState::too_short_for(const std::vector<double>& series) const {
   constexpr double times_to_trust = 20;  // as for the mean of a series
   const auto tau = statistics::autocorrelation_time(series);
-  estimate.correlation_time = tau.time * interval;
-  if (tau.constant || std::isnan(estimate.value)) return;
-  if (!tau.window_closed || !(tau.valid_samples >= times_to_trust * tau.time)) {
-    statistics::doubt(estimate, fmt::format("the steady part, {} samples, is shorter than {:g} correlation times of {:.3g} samples", times, times_to_trust, tau.time));
-  }
+  if (tau.constant || (tau.window_closed && tau.valid_samples >= times_to_trust * tau.time)) return {};
+  return fmt::format("the steady part, {} samples, is shorter than {:g} correlation times of {:.3g} samples", times, times_to_trust, tau.time);
+}
+
+void SteadyState::judge(statistics::Estimate& estimate, const std::vector<double>& series) const {
+  if (std::isnan(estimate.value)) return;
+  estimate.correlation_time = statistics::autocorrelation_time(series).time * interval;
+  if (const std::string reason = too_short_for(series); !reason.empty()) statistics::doubt(estimate, reason);
 }
 
 }  // namespace corpuscle::analysis

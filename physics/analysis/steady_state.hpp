@@ -57,8 +57,14 @@ class SteadyState {
   static std::vector<double> mean_of_cells(const Eigen::MatrixXd& values);
   /// Gives an average the correlation time of `series`, its mean over the cells, and doubts it where the steady part is too short for that.
   void judge(statistics::Estimate& estimate, const std::vector<double>& series) const;
+  /// Doubts a curve or a fit likewise.
+  template <class Result>
+  void judge(Result& result, const std::vector<double>& series) const {
+    if (const std::string reason = too_short_for(series); !reason.empty()) statistics::doubt(result, reason);
+  }
 
  private:
+  std::string too_short_for(const std::vector<double>& series) const;
   void find_start_up(Analysis& analysis);
   std::vector<double> velocity_variances() const;
 

@@ -11,17 +11,19 @@ void add_stresslets(const SteadyState& state, Analysis& analysis) {
   if (!missing.empty()) return analysis.refuse(Group::stress, missing);
   constexpr int xz = 2;
   Eigen::MatrixXd stresslets = state.component(CellQuantity::stresslet, xz);
-  const auto layers = layers_of(state, state.blocks(SteadyState::mean_of_cells(stresslets)));
+  const auto all = SteadyState::mean_of_cells(stresslets);
   analysis.curve("profile_stress_xz") =
-      profile_curve(state, statistics::density_profile(state.heights, stresslets, state.record.box[0] * state.record.box[1], layers), state.stress_unit());
+      profile_curve(state, statistics::density_profile(state.heights, stresslets, state.record.box[0] * state.record.box[1], layers_of(state, all)), state.stress_unit(), all);
 
   const Eigen::MatrixXd in_bulk = stresslets.cwiseProduct(state.inside);
   auto& fluctuation = analysis.estimate("stress_fluctuation");
   fluctuation = statistics::relative_fluctuation(in_bulk);
   const double mean = statistics::moments(in_bulk, 1).mean.value;
-  state.judge(fluctuation, SteadyState::mean_of_cells((in_bulk.array() - mean).square().matrix()));
+  const auto squares = SteadyState::mean_of_cells((in_bulk.array() - mean).square().matrix());
+  state.judge(fluctuation, squares);
   if (mean != 0) analysis.curve("pdf_stresslet") = statistics::probability_density(statistics::histogram_around_mean(in_bulk / mean));
   else analysis.curve("pdf_stresslet").reason = "the mean stresslet is zero";
+  state.judge(analysis.curve("pdf_stresslet"), squares);
 
   stresslets.array() -= mean;
   const auto correlation = statistics::cross_correlation((in_bulk.array() - mean).matrix(), stresslets, state.interval, state.lags());

@@ -44,13 +44,16 @@ void add_volume_fractions(const SteadyState& state, Analysis& analysis) {
   analysis.estimate("phi_bulk") = statistics::mean_estimate(fraction, state.interval);
   analysis.estimate("phi_bulk_geometric") = statistics::mean_estimate(fraction_of(volumes), state.interval);
   analysis.curve("profile_phi") = profile_curve(
-      state, statistics::density_profile(state.heights, effective, record.box[0] * record.box[1], layers_of(state, state.blocks(fraction))), 1);
+      state, statistics::density_profile(state.heights, effective, record.box[0] * record.box[1], layers_of(state, fraction)), 1, fraction);
 }
 
-void visit_snapshots(const SteadyState& state, PairDistribution& pairs) {
-  const Index every = std::max<Index>((state.times + most_snapshots - 1) / most_snapshots, 1);
+Index snapshot_interval(const SteadyState& state) { return std::max<Index>((state.times + most_snapshots - 1) / most_snapshots, 1); }
+
+template <class Take>
+void visit_snapshots(const SteadyState& state, const Take& take) {
+  const Index every = snapshot_interval(state);
   state.record.cells->visit(CellQuantity::centre, state.first, [&](Index time, std::span<const double> centres) {
-    if ((time - state.first) % every == 0) pairs.add(centres);
+    if ((time - state.first) % every == 0) take(time - state.first, centres);
   });
 }
 
@@ -87,7 +90,7 @@ void add_pairs(const SteadyState& state, Analysis& analysis) {
   options.reach = half;
   options.bins = std::max<Index>(std::lround(half / (bin_width * record.radius)), 1);
   PairDistribution pairs(options);
-  visit_snapshots(state, pairs);
+  visit_snapshots(state, [&](Index, std::span<const double> centres) { pairs.add(centres); });
   const auto distribution = statistics::with_errors(pairs.result());
   auto& curve = analysis.curve("pair_distribution");
   curve = distribution;
@@ -105,9 +108,15 @@ void add_pairs(const SteadyState& state, Analysis& analysis) {
   }
   options.reach = options.contact_distance;
   options.bins = 1;
-  PairDistribution neighbours(options);
-  visit_snapshots(state, neighbours);
-  contacts = neighbours.contact_number();
+  const Index every = snapshot_interval(state);
+  std::vector<double> series(static_cast<std::size_t>((state.times - 1) / every + 1), statistics::not_a_number);
+  visit_snapshots(state, [&](Index time, std::span<const double> centres) {
+    PairDistribution neighbours(options);
+    neighbours.add(centres);
+    series[static_cast<std::size_t>(time / every)] = neighbours.contact_number({.resamples = 0}).value;
+  });
+  contacts = statistics::mean_estimate(series, static_cast<double>(every) * state.interval);
+  state.judge(curve, series);  // neighbourhoods last
 }
 
 }  // namespace

@@ -26,40 +26,52 @@ struct FlowProfile {
   MatrixXd about_uniform;  // [times][cells]
   BlockedCurve rest;
   double uniform_rate = 0;
+  std::vector<double> squares;  // of `about_uniform`, mean over the cells
 };
 
 FlowProfile flow_of(const SteadyState& state) {
   FlowProfile flow;
   flow.uniform_rate = state.record.flow == FlowOf::shear ? state.record.shear_rate : 0;
   flow.about_uniform = statistics::fluctuations(state.heights, state.component(CellQuantity::velocity, 0), flow.uniform_rate, state.height() / 2);
-  const auto blocks = state.blocks(SteadyState::mean_of_cells(flow.about_uniform.cwiseAbs2()));
-  flow.rest = statistics::profile(state.heights, flow.about_uniform, layers_of(state, blocks));
+  flow.squares = SteadyState::mean_of_cells(flow.about_uniform.cwiseAbs2());
+  flow.rest = statistics::profile(state.heights, flow.about_uniform, layers_of(state, flow.squares));
   return flow;
 }
 
-// Slope of the least-squares line through the profile between `low` and `high`.
-double slope_within(const VectorXd& x, const VectorXd& y, double low, double high) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (Index i = 0; i < x.size(); ++i) {
-    if (!(x[i] >= low && x[i] <= high) || std::isnan(y[i])) continue;
-    n += 1, sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
+// Slope of the straight line through the velocities of all cells in the bulk against their heights. Not through the means in layers: these would have to stand for
+// the heights of the few cells in a layer.
+Estimate slope_of(const SteadyState& state, const MatrixXd& velocities, Index blocks) {
+  BlockedCurve means;  // of z, u, z^2, z u
+  means.x = VectorXd::LinSpaced(4, 0, 3);
+  means.sums = means.counts = MatrixXd::Zero(4, blocks);
+  VectorXd terms(4);
+  for (Index cell = 0; cell < velocities.cols(); ++cell) {
+    for (Index b = 0; b < blocks; ++b) {
+      for (Index t = b * state.times / blocks; t < (b + 1) * state.times / blocks; ++t) {
+        const double z = (state.heights(t, cell) - state.height() / 2) * state.inside(t, cell), u = velocities(t, cell);
+        if (std::isnan(z + u)) continue;
+        terms << z, u, z * z, z * u;
+        means.sums.col(b) += terms;
+        means.counts.col(b).array() += 1;
+      }
+    }
   }
-  return n < 3 ? statistics::not_a_number : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  if (means.counts.sum() <= 0) means.reason = "no cell is in the bulk";
+  return statistics::estimate_from(means, [](const VectorXd& m) { return (m[3] - m[0] * m[1]) / (m[2] - m[0] * m[0]); });
 }
 
 void add_mean_flow(const SteadyState& state, const FlowProfile& flow, Analysis& analysis) {
   Curve& profile = analysis.curve("profile_velocity");
-  profile = profile_curve(state, flow.rest, state.velocity_unit());
+  profile = profile_curve(state, flow.rest, state.velocity_unit(), flow.squares);
   profile.value.array() += flow.uniform_rate / state.record.shear_rate * (profile.x.array() - state.height() / (2 * state.record.radius));
   Estimate& slope = analysis.estimate("shear_rate_bulk");
   if (state.record.flow != FlowOf::shear) {
     slope.reason = "in channel flow the shear rate changes across the bulk: see profile_velocity";
     return;
   }
-  const double rate = state.record.shear_rate;
-  slope = statistics::estimate_from(flow.rest, [&](const VectorXd& y) { return 1 + slope_within(flow.rest.x, y, state.bulk.low, state.bulk.high) / rate; });
-  if (flow.rest.reason.empty() && std::isnan(slope.value)) slope.reason = "fewer than three layers of the bulk hold cells";
-  // The slope moves with the cells' mean velocity weighted by their height.
+  slope = slope_of(state, flow.about_uniform / state.record.shear_rate, flow.rest.blocks());
+  slope.value += 1;
+  // It moves with the cells' mean velocity weighted by their height.
   const MatrixXd tilt = flow.about_uniform.cwiseProduct(((state.heights.array() - state.height() / 2) * state.inside.array()).matrix());
   state.judge(slope, SteadyState::mean_of_cells(tilt));
 
@@ -122,6 +134,12 @@ void add_correlations(const SteadyState& state, const MatrixXd& all, const Matri
   analysis.estimate("diffusivity_vacf_" + name) = statistics::diffusion_from_vacf(vacf);
   const double until = std::min(fit_until, vacf.trusted_until());
   auto stretched = statistics::diffusion_from_stretched_exponential(few, until);
+  constexpr double times_a_block = 6;  // relaxation times: shorter stretches of time aren't independent
+  if (vacf.block_length < times_a_block * stretched.diffusion.correlation_time) {
+    const std::string reason = fmt::format("blocks of {:.3g} strains are shorter than {:g} relaxation times: errors are too small", vacf.block_length, times_a_block);
+    doubt(stretched.diffusion, reason);
+    doubt(stretched.fit, reason);
+  }
   analysis.estimate("diffusivity_gamma_" + name) = stretched.diffusion;
   NamedFit& fit = analysis.fit("vacf_" + name + "_stretched_exponential");
   fit.fit = stretched.fit;
@@ -162,8 +180,10 @@ void add_velocities(const SteadyState& state, Analysis& analysis) {
                                               "displacements contain it", name, moments.mean.value, moments.mean.error));
     }
     analysis.curve("profile_variance_" + name) =
-        profile_curve(state, statistics::profile(state.heights, all.cwiseAbs2(), layers_of(state, state.blocks(squares))), 1);
+        profile_curve(state, statistics::profile(state.heights, all.cwiseAbs2(), layers_of(state, squares)), 1, squares);
     add_density(in_bulk, name, analysis);
+    state.judge(analysis.curve("pdf_velocity_" + name), squares);
+    state.judge(analysis.fit("pdf_velocity_" + name + "_core_and_tails").fit, squares);
     add_correlations(state, all, in_bulk, name, analysis);
   }
 }

@@ -31,6 +31,7 @@ steps = {steps}
 series_every = 0.01
 snapshot_every = 0.05
 fluid = true
+statistics = true
 checkpoint_steps = {checkpoint_steps}
 """
 FILES = ("run.h5", "cells.vtkhdf", "fluid.vtkhdf")

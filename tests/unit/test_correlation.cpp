@@ -247,3 +247,27 @@ TEST_CASE("multiple-tau correlator: averaging, errors and memory", "[statistics]
   for (int i = 0; i < 5; ++i) young.add(missing);
   CHECK(says(young.result().reason, "no valid sample"));
 }
+
+TEST_CASE("correlation: MSD over chosen origins", "[statistics]") {
+  Normal normal(5);
+  const MatrixXd x = ar1_matrix(0.8, 60, 3, normal);
+  MatrixXd origins = MatrixXd::Ones(60, 3);
+  for (Index t = 0; t < 60; t += 3) origins(t, t % 2) = not_a_number;
+  MatrixXd gaps = x;
+  gaps(17, 2) = gaps(40, 1) = not_a_number;
+  const auto msd = mean_square_displacement(gaps, origins, 0.5, {.longest_lag = 10, .blocks = 4});
+  for (Index lag = 1; lag <= 10; ++lag) {
+    double sum = 0, count = 0;
+    for (Index p = 0; p < 3; ++p) {
+      for (Index t = 0; t + lag < 60; ++t) {
+        const double square = std::pow(gaps(t + lag, p) - gaps(t, p), 2);
+        if (std::isnan(square) || std::isnan(origins(t, p))) continue;
+        sum += square;
+        count += 1;
+      }
+    }
+    CHECK(msd.counts.row(lag).sum() == count);
+    CHECK(msd.value()[lag] == Approx(sum / count));
+  }
+  CHECK(says(mean_square_displacement(x, origins.topRows(5), 0.5, {}).reason, "shapes"));
+}
