@@ -70,8 +70,11 @@ KOKKOS_FORCEINLINE_FUNCTION void triangle_forces(const MembraneTables<Real>& tab
 }
 
 /// Bending forces of one edge on its four vertices, E = p kappa_B (theta - theta_0)^2; theta > 0 where the surface is convex. stiffness = 2 p kappa_B.
+/// The force on a tip is the moment over the height of its triangle, and the stiffness grows with 1/height^2: what no step is short enough for when a fold squeezes a triangle to
+/// nothing. The moment of an edge falls with (2 area)^2/`collapsed` of both of its triangles where that is below 1: forces and torques of the edge still sum to zero.
+/// @param collapsed (2 area)^2 below which a triangle counts as squeezed
 template <class Real, class T, class Position, class Add>
-KOKKOS_FORCEINLINE_FUNCTION void edge_forces(const MembraneTables<Real>& tables, const T& stiffness, const int e, const Position& position, const Add& add) {
+KOKKOS_FORCEINLINE_FUNCTION void edge_forces(const MembraneTables<Real>& tables, const T& stiffness, const T& collapsed, const int e, const Position& position, const Add& add) {
   const int p = tables.edges(e, 0), q = tables.edges(e, 1), left = tables.edges(e, 2), right = tables.edges(e, 3);
   const Vec3<T> origin = position(p);
   const Vec3<T> edge = position(q) - origin, to_left = position(left) - origin, to_right = position(right) - origin;
@@ -82,8 +85,10 @@ KOKKOS_FORCEINLINE_FUNCTION void edge_forces(const MembraneTables<Real>& tables,
   const T cos_0 = T(tables.edge_reference(e, 0)), sin_0 = T(tables.edge_reference(e, 1));
   const T moment = stiffness * length * angle_of(s * cos_0 - c * sin_0, c * cos_0 + s * sin_0);
   // dtheta/dl = -|e|/|N_l|^2 N_l at the left tip, likewise at the right one; the ends share the opposite forces by the feet of the tips on the edge.
-  const Vec3<T> force_left = (moment / dot(normal_left, normal_left)) * normal_left;
-  const Vec3<T> force_right = (moment / dot(normal_right, normal_right)) * normal_right;
+  const T squared_left = dot(normal_left, normal_left), squared_right = dot(normal_right, normal_right);
+  const T bound_left = Kokkos::max(squared_left, collapsed), bound_right = Kokkos::max(squared_right, collapsed);
+  const Vec3<T> force_left = (moment * (squared_right / bound_right) / bound_left) * normal_left;
+  const Vec3<T> force_right = (moment * (squared_left / bound_left) / bound_right) * normal_right;
   const T inverse = T(1) / squared_length;
   const Vec3<T> force_q = (T(0) - dot(to_left, edge) * inverse) * force_left - (dot(to_right, edge) * inverse) * force_right;
   add(left, force_left);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 
 #include "kernels/strain_law.hpp"
 #include "physics/membrane_driver.hpp"
@@ -9,6 +10,9 @@
 
 namespace corpuscle {
 namespace {
+
+/// Triangles with less than this share of the mean reference area have bounded bending forces (kernels/membrane_force.hpp).
+constexpr double squeezed_triangle = 0.2;
 
 template <class Real, class Law, bool needs_bending, bool needs_global>
 class MembraneOf final : public Membrane {
@@ -61,6 +65,7 @@ class MembraneOf final : public Membrane {
     Kokkos::deep_copy(t.face_reference, faces);
     block_.bending_stiffness = bending_stiffness_ * scale * scale;
     block_.global.area = mesh_area(reference_) * scale * scale;
+    block_.collapsed = std::pow(squeezed_triangle * 2 * block_.global.area / block_.faces, 2);
     block_.global.volume = mesh_volume(reference_) * scale * scale * scale;
   }
 

@@ -50,6 +50,7 @@ struct MembraneBlock {
   MembraneTables<Real> tables;
   Law law;
   double bending_stiffness;  ///< 2 p kappa_B
+  double collapsed;          ///< (2 area)^2 below which a triangle's bending forces are bounded
   GlobalReference global;
   int vertices, faces, edges, first_vertex, cell_count, scratch_level;
   VertexVectors positions, forces;
@@ -99,7 +100,7 @@ struct MembraneBlock {
     }
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, faces), [&](const int f) { triangle_forces<Real, Pack, Law, needs_global>(tables, law, tension, f, position, add); });
     if constexpr (needs_bending)
-      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, edges), [&](const int e) { edge_forces<Real, Pack>(tables, Pack(Real(bending_stiffness)), e, position, add); });
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, edges), [&](const int e) { edge_forces<Real, Pack>(tables, Pack(Real(bending_stiffness)), Pack(Real(collapsed)), e, position, add); });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, vertices), [&](const int v) {
       const int used = cell_count - block * lanes < lanes ? cell_count - block * lanes : lanes;
