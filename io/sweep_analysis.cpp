@@ -206,10 +206,11 @@ std::string sweep_analysis_page(const SweepAnalysis& sweep) {
     if (!fit.converged) text += fmt::format("{}({})", text.empty() ? "" : " ", fit.reason);
     return text;
   };
-  for (const auto& curve : sweep.curves) page += fmt::format("| {:.4g} | {} | {} | {} |\n", curve.phi_effective, curve.runs.size(), text_of(curve.shear_thinning), text_of(curve.yield_stress));
+  for (const auto& curve : sweep.curves)
+    page += fmt::format("| {:.4g} | {} | {} | {} |\n", curve.phi_effective, curve.runs.size(), text_of(curve.shear_thinning), text_of(curve.yield_stress));
   const auto& critical = sweep.critical_volume_fraction;
-  page += fmt::format("\nYield stress vanishes at phi = {}{}.\nGap between cells, l = 2 r' (phi^(-1/3) - 1) with r' in lattice spacings: {}.\n", with_error(critical.value, critical.error),
-                      critical.converged ? "" : " (" + critical.reason + ")", text_of(sweep.gap_radius));
+  page += fmt::format("\nYield stress vanishes at phi = {}{}.\nGap between cells, l = 2 r' (phi^(-1/3) - 1) with r' in lattice spacings: {}.\n",
+                      with_error(critical.value, critical.error), critical.converged ? "" : " (" + critical.reason + ")", text_of(sweep.gap_radius));
   return page + warnings_page(sweep.warnings);
 }
 

@@ -209,6 +209,13 @@ def check_bad_input(program, folder, work):
     assert "relative_viscosity" in json.loads((folder / "summary.json").read_text())
 
 
+def check_overwrite(program, work):
+    """A new run in the place of an old one takes its analysis away."""
+    assert (work / "one/analysis.json").exists() and (work / "one/analysis.md").exists()
+    run(program, "run", work / "one.toml", "--output", work / "one", "--threads", "1", "--overwrite", "--set", "run.steps=2")
+    assert not (work / "one/analysis.json").exists() and not (work / "one/analysis.md").exists()
+
+
 def check_running(program, work):
     """A run that goes on can be analysed; so can what an interrupt leaves."""
     (work / "long.toml").write_text(SCENE.replace("strain = 4", "strain = 10000"))
@@ -305,6 +312,7 @@ def main():
         check_parts(program, work / "a", work)
         check_bad_input(program, work / "a", work)
         check_scenes(program, work)
+        check_overwrite(program, work)
         check_running(program, work)
         check_sweep(program, work / "a", work)
     print("all good")

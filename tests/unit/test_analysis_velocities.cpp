@@ -139,8 +139,27 @@ TEST_CASE("analysis: one cell, few samples, a gap in the samples, a drift", "[an
       CHECK((item.group == analysis::Group::drift || !item.estimate.converged));
       CHECK(item.estimate.converged == item.estimate.reason.empty());
     }
+    for (const auto& item : found.curves) {
+      CAPTURE(item.name, item.curve.reason);
+      CHECK_FALSE(item.curve.converged);
+      CHECK_FALSE(item.curve.reason.empty());
+    }
+    for (const auto& item : found.fits) {
+      CAPTURE(item.name);
+      CHECK_FALSE(item.fit.converged);
+      CHECK_FALSE(item.fit.reason.empty());
+    }
     CHECK(std::isfinite(found.estimate("velocity_variance_y").value));
     CHECK(says(found.estimate("diffusivity_msd_y").reason, "too few"));
+  }
+
+  // 40 samples of series that last 33: profiles and densities are as doubtful as their numbers, also when the start-up is known.
+  SyntheticRun brief{.times = 40, .cells = 12, .decay = 0.97};
+  const auto doubtful = analysis::analyse(brief.record(), from_start);
+  for (const char* name : {"profile_velocity", "profile_variance_y", "pdf_velocity_z", "profile_stress_xz"}) {
+    CAPTURE(name, doubtful.curve(name).reason);
+    CHECK(doubtful.curve(name).value.size() > 0);
+    CHECK(says(doubtful.curve(name).reason, "shorter than 20 correlation times"));
   }
 
   SyntheticRun run{.times = 3000, .cells = 30};
