@@ -112,14 +112,14 @@ def check_stops(program, folder, reference):
 def check_wall_time(program, folder, reference):
     """A run that would take days stops after two seconds, and once more; then its end is set to where it has come to, and it equals one of that length."""
     output, packing = folder / "wall-time", f'run.packing="{reference / "packing.h5"}"'  # of packing nothing is kept, so it must not be where the time goes
-    command(program, "run", folder / "kills.toml", "--output", output, "--set", packing, "--set", "run.steps=100000000", "--wall-time", "00:00:02",
-            "--threads", 1, check=75)
+    command(program, "run", folder / "kills.toml", "--output", output, "--set", packing, "--set", "run.steps=100000000", "--set", "run.discard=0",
+            "--wall-time", "00:00:02", "--threads", 1, check=75)
     command(program, "resume", output, "--wall-time", "0-00:00:01", "--threads", 1, check=75)
     summary = json.loads((output / "summary.json").read_text())
     assert summary["stopped_by"] == "wall time", summary
     command(program, "resume", output, "--until", f"steps={summary['steps']}")
     once = folder / "until-wall-time"
-    command(program, "run", folder / "kills.toml", "--output", once, "--set", packing, "--set", f"run.steps={summary['steps']}", "--threads", 1)
+    command(program, "run", folder / "kills.toml", "--output", once, "--set", packing, "--set", f"run.steps={summary['steps']}", "--set", "run.discard=0", "--threads", 1)
     check_equal(once, output, f"wall time, twice, until step {summary['steps']}")
     wrong = command(program, "resume", output, "--wall-time", "90", check=2)
     assert "HH:MM:SS" in wrong.stderr
