@@ -154,6 +154,13 @@ void LiveStatistics::restore(std::span<const double> saved) {
     }
 }
 
+std::size_t LiveStatistics::predicted_bytes(std::size_t cells) {
+  const statistics::MultipleTauOptions options;
+  const auto channels = static_cast<std::size_t>(options.channels), correlators = std::size_t{5};
+  const std::size_t level = channels * cells + 2 * channels * 2 * static_cast<std::size_t>(options.blocks);
+  return sizeof(double) * (correlators * static_cast<std::size_t>(options.levels) * level + std::size_t{3} * (bins + 1) * stretches);
+}
+
 std::size_t LiveStatistics::bytes() const {
   std::size_t sum = sizeof(double) * static_cast<std::size_t>(3 * bins * stretches + valid_.size());
   for (const auto* group : {&velocities_, &positions_})

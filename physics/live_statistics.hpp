@@ -41,6 +41,8 @@ class LiveStatistics {
   void restore(std::span<const double> saved);
 
   std::size_t bytes() const;
+  /// What `bytes` will be, from the first sample on.
+  static std::size_t predicted_bytes(std::size_t cells);
   std::int64_t samples() const { return samples_; }
   double wall_layer() const { return layer_ / radius_; }  ///< radii; 0: no bulk is left, or there are no walls
 

@@ -5,6 +5,7 @@
 #include "physics/contact.hpp"
 #include "physics/coupling.hpp"
 #include "physics/guards.hpp"
+#include "physics/live_statistics.hpp"
 #include "physics/packing.hpp"
 #include "physics/suspension.hpp"
 #include "physics/vertex_motion.hpp"
@@ -50,7 +51,7 @@ bool packs(const Problem& problem, const LatticeParameters& lattice) {
 
 }  // namespace
 
-std::size_t MemoryEstimate::peak() const { return program + std::max(packing, suspension() + std::max(settling, output)); }
+std::size_t MemoryEstimate::peak() const { return program + std::max(packing, suspension() + statistics + std::max(settling, output)); }
 
 MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& lattice) {
   MemoryEstimate m;
@@ -93,6 +94,10 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
   if (lattice.snapshot_every > 0) m.output += host_copy * vertices * (2 * vector + 7 * sizeof(float));
   // A checkpoint: positions, velocities, and those of the two steps before.
   checkpoint += host_copy * vertices * (problem.accuracy.vertex_update == VertexUpdate::euler ? 2 : 4) * vector;
+  if (problem.output.statistics && runs_on_host) {
+    m.statistics = LiveStatistics::predicted_bytes(cells);
+    checkpoint += 2 * m.statistics;  // as plain numbers, those of the correlators on the way
+  }
   m.output = std::max(m.output, checkpoint);
   return m;
 }

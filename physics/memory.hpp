@@ -13,6 +13,7 @@ struct MemoryEstimate {
   std::size_t vertices = 0;  ///< state of all vertices, order of spreading, samples of the cells
   std::size_t tables = 0;    ///< topology and reference state of the cell types
   std::size_t contact = 0;   ///< neighbour lists
+  std::size_t statistics = 0;  ///< of a running simulation, on the host
   // One after the other:
   std::size_t packing = 0;   ///< before the rest is there
   std::size_t settling = 0;  ///< beside the suspension, before the first step
