@@ -59,7 +59,10 @@ def write_csv(sweep, path):
                     rows.writerow([run.name, f"{run.phi:.6g}", f"{run.info.get('phi_geometric'):.6g}", f"{run.ca:.6g}", name, f"{value.value:.6g}", f"{value.error:.3g}", int(value.converged)])
 
 
-def figures(sweep, folder):
+def figures(sweep, folder, wanted):
+    if not wanted:
+        return "Not drawn (--no-figures)."
+    folder.mkdir(parents=True, exist_ok=True)
     report = Report(folder, pdf=False)
     lines = []
     for name, title, function in SWEEP_FIGURES:
@@ -79,6 +82,8 @@ def main():
     parser.add_argument("folder", type=pathlib.Path, help="of an analysed sweep")
     parser.add_argument("--document", type=pathlib.Path, required=True)
     parser.add_argument("--prose", type=pathlib.Path, default=pathlib.Path(__file__).with_name("reproduction_prose.md"))
+    parser.add_argument("--no-figures", action="store_true", help="tables only")
+    parser.add_argument("--dpi", type=int, default=150, help="of the figures (default: 150)")
     options = parser.parse_args()
     try:
         sweep = load(options.folder)
@@ -86,11 +91,10 @@ def main():
         sys.exit(str(error))
     if not isinstance(sweep, Sweep):
         sys.exit(f"{options.folder} is a single run; statements are held against a sweep.")
-    use_style(dpi=150)
+    use_style(dpi=options.dpi)
     folder = options.document.parent / "figures" / "reproduction"
-    folder.mkdir(parents=True, exist_ok=True)
     write_csv(sweep, options.document.with_suffix(".csv"))
-    parts = {"{{statements}}": statements_table(sweep), "{{runs}}": runs_table(sweep), "{{figures}}": figures(sweep, folder), "{{revision}}": ", ".join(sorted({r.git_revision for r in sweep.runs}))}
+    parts = {"{{statements}}": statements_table(sweep), "{{runs}}": runs_table(sweep), "{{figures}}": figures(sweep, folder, not options.no_figures), "{{revision}}": ", ".join(sorted({r.git_revision for r in sweep.runs}))}
     page = options.prose.read_text()
     for mark, words in parts.items():
         if mark not in page:

@@ -12,9 +12,9 @@ from synthetic_analysis import write, write_sweep
 SOURCE = pathlib.Path(sys.argv[2])
 
 
-def verdicts(folder, document):
+def verdicts(folder, document, *options):
     """{statement: verdict} of the page that is written."""
-    done = subprocess.run([sys.executable, str(SOURCE / "report/reproduction.py"), str(folder), "--document", str(document)], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, str(SOURCE / "report/reproduction.py"), str(folder), "--document", str(document), *options], capture_output=True, text=True)
     expect(done.returncode == 0, f"reproduction.py ends with {done.returncode}: {done.stderr}")
     page = document.read_text()
     return {row[0]: row[2] for row in re.findall(r"^\| ([^|]+) \| (.+) \| \*\*([a-z ]+)\*\*", page, re.M)}, page
@@ -31,7 +31,7 @@ def main():
         sweep, document = folder / "sweep", folder / "docs/reproduction.md"
         document.parent.mkdir()
         write_sweep(sweep)
-        found, page = verdicts(sweep, document)
+        found, page = verdicts(sweep, document, "--dpi", "60")
         expect(len(found) == 14, f"14 statements have a verdict: {sorted(found)}")
         # What the made-up data were made of.
         for start in ("Newtonian", "Yield stress", "VACF", "Gap l"):
@@ -50,7 +50,7 @@ def main():
             curve["yield_stress"]["parameters"]["yield_stress"].update(value=1e-6, error=1e-3)
         data["gap_radius"]["parameters"]["slope"]["value"] *= 3
         write(sweep / "analysis.json", data)
-        found, _ = verdicts(sweep, document)
+        found, _ = verdicts(sweep, document, "--no-figures")
         is_now(found, "Newtonian", "does not hold")
         is_now(found, "Shear thinning", "does not hold")
         is_now(found, "Gap l", "does not hold")
