@@ -26,6 +26,7 @@ analysis::AnalysisOptions choices_of(const AnalyseOptions& options) {
   analysis::AnalysisOptions choices;
   choices.wall_layer = options.wall_layer;
   choices.mean_flow = options.mean_flow == "uniform" ? analysis::MeanFlow::uniform : analysis::MeanFlow::measured;
+  choices.rate = options.shear_rate == "bulk" ? analysis::RateOf::bulk : analysis::RateOf::walls;
   if (options.discard) choices.discard = *options.discard;
   if (options.longest_lag) choices.longest_lag = *options.longest_lag;
   return choices;
@@ -33,9 +34,8 @@ analysis::AnalysisOptions choices_of(const AnalyseOptions& options) {
 
 /// Analyses one run and writes .json and .md. @returns the page
 std::string analyse_run(const fs::path& directory, const fs::path& output, const analysis::AnalysisOptions& choices) {
-  const analysis::RunRecord record = read_run_record(directory);
   require_replaceable(output, analysis_format, {".md"});
-  const analysis::Analysis analysis = analysis::analyse(record, choices);
+  const auto [record, analysis] = analysis::analyse_referred(read_run_record(directory), choices);
   const std::string page = analysis_page(record, analysis);
   replace_file(fs::path(output).replace_extension(".md"), page, "the page of the analysis");
   replace_file(output, analysis_json(record, analysis).dump(1) + "\n", "the analysis");

@@ -60,6 +60,7 @@ struct AnalyseOptions {
   std::string directory;
   double wall_layer = 4;                ///< radii
   std::string mean_flow = "measured";   ///< or "uniform"
+  std::string shear_rate = "walls";     ///< or "bulk": the unit of rates
   std::optional<double> discard;        ///< strain; none: found from the series
   std::optional<double> longest_lag;    ///< strain; none: a quarter of what is left
   std::string output;                   ///< .json; empty: analysis.json in the directory

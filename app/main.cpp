@@ -101,6 +101,9 @@ int main(int argc, char** argv) {
   analyse->add_option("--mean-flow", analyse_options.mean_flow, "Flow that velocity fluctuations along x are about: measured in layers of z, or uniform shear")
       ->check(CLI::IsMember({"measured", "uniform"}))
       ->capture_default_str();
+  analyse->add_option("--shear-rate", analyse_options.shear_rate, "Rate that strains, velocities, stresses and Ca are referred to: of the walls, or the measured one of the bulk")
+      ->check(CLI::IsMember({"walls", "bulk"}))
+      ->capture_default_str();
   analyse->add_option("--discard", analyse_options.discard, "Leave the start-up up to this strain out (default: found from the series)")->type_name("STRAIN");
   analyse->add_option("--longest-lag", analyse_options.longest_lag, "Longest lag of time correlations (default: a quarter of what is left)")->type_name("STRAIN");
   analyse->add_option("-o,--output", analyse_options.output, "File of the results (default: analysis.json in DIR); the page goes beside it, with .md")->type_name("FILE");

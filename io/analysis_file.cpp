@@ -61,7 +61,8 @@ Json fit_json(const statistics::Fit& fit) {
 }
 
 Json asked_json(const analysis::AnalysisOptions& options) {
-  return {{"wall_layer", options.wall_layer}, {"mean_flow", name_of(options.mean_flow)}, {"discard", number(options.discard)}, {"longest_lag", number(options.longest_lag)}};
+  return {{"wall_layer", options.wall_layer}, {"mean_flow", name_of(options.mean_flow)}, {"shear_rate", options.rate == analysis::RateOf::bulk ? "bulk" : "walls"},
+          {"discard", number(options.discard)}, {"longest_lag", number(options.longest_lag)}};
 }
 
 Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& analysis) {
@@ -79,6 +80,7 @@ Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& 
                  {"effective_radius", number(record.mean_effective_radius())},
                  {"viscosity", number(record.viscosity)},
                  {"shear_rate", number(record.shear_rate)},
+                 {"rate_factor", number(record.rate_factor)},
                  {"box", record.box},
                  {"strain", number(record.strain)},
                  {"samples", record.samples},

@@ -90,6 +90,7 @@ std::string analysis_page(const RunRecord& record, const Analysis& analysis) {
   page += fmt::format("The first {} strains are left out{}. Layers of {:g} radii at the walls are left out; mean flow: {}; lags up to {} strains.\n",
                       number(settings.discarded_strain), analysis.start_up.converged ? "" : " (**not converged**)", settings.wall_layer,
                       settings.mean_flow == analysis::MeanFlow::uniform ? "uniform" : "measured", number(settings.longest_lag));
+  if (record.rate_factor != 1) page += fmt::format("Ca, strains and all rates are referred to the shear rate of the bulk, {} of that of the walls.\n", number(record.rate_factor));
   page += "Times in strains, lengths in radii r, velocities in gamma_dot r, stresses in eta_0 gamma_dot.\n";
   Reasons reasons;
   page += estimates_page(analysis, reasons);

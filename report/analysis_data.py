@@ -114,6 +114,8 @@ class Run:
         self.warnings = list(data.get("warnings") or [])
         self.version, self.git_revision = data.get("version", ""), data.get("git_revision", "")
         self.phi, self.ca = number(self.info.get("phi_effective")), number(self.info.get("capillary_number"))
+        factor = number(self.info.get("rate_factor", 1))  # of the bulk's shear rate over that of the walls, where the analysis is referred to it
+        self.nominal_ca = self.ca / factor if factor > 0 else self.ca
         self.radius = number(self.info.get("radius"))
         self._why_no_curves = why_no_curves
 
@@ -150,11 +152,11 @@ class Sweep:
     def __init__(self, runs, data=None, folder=None):
         data = data or {}
         self.folder = folder
-        phis, cas = grouped(r.phi for r in runs), grouped(r.ca for r in runs)
-        self.runs = [r for r in runs if r.phi in phis and r.ca in cas]
+        phis, cas = grouped(r.phi for r in runs), grouped(r.nominal_ca for r in runs)
+        self.runs = [r for r in runs if r.phi in phis and r.nominal_ca in cas]
         self.outside = [r for r in runs if r not in self.runs]
         for run in self.runs:
-            run.phi_group, run.ca_group = phis[run.phi], cas[run.ca]
+            run.phi_group, run.ca_group = phis[run.phi], cas[run.nominal_ca]
         self.phis, self.cas = sorted({r.phi_group for r in self.runs}), sorted({r.ca_group for r in self.runs})
         self.warnings = list(data.get("warnings") or [])
         self.critical = Value(data.get("critical_volume_fraction"), "the sweep has not been analysed for it")

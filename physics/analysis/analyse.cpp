@@ -49,4 +49,20 @@ Analysis analyse(const RunRecord& record, const AnalysisOptions& options) {
   return analysis;
 }
 
+std::pair<RunRecord, Analysis> analyse_referred(RunRecord record, const AnalysisOptions& options) {
+  std::string warning;
+  if (options.rate == RateOf::bulk) {
+    const statistics::Estimate rate = analyse(record, options).estimate("shear_rate_bulk");
+    if (rate.value > 0) {
+      if (!rate.converged) warning = fmt::format("the shear rate of the bulk, {:.3g} of that of the walls, isn't converged: {}", rate.value, rate.reason);
+      record = referred_to(rate.value, std::move(record));
+    } else {
+      warning = "referred to the shear rate of the walls, as that of the bulk isn't known: " + (rate.reason.empty() ? fmt::format("it came out as {:.3g} of that of the walls", rate.value) : rate.reason);
+    }
+  }
+  Analysis analysis = analyse(record, options);
+  if (!warning.empty()) analysis.warnings.push_back(warning);
+  return {std::move(record), std::move(analysis)};
+}
+
 }  // namespace corpuscle::analysis

@@ -26,4 +26,11 @@ double RunRecord::mean_effective_radius() const {
   return cell_count() > 0 ? sum / static_cast<double>(cell_count()) : statistics::not_a_number;
 }
 
+RunRecord referred_to(double factor, RunRecord record) {
+  for (double* value : {&record.capillary_number, &record.shear_rate, &record.rate_factor, &record.interval, &record.strain}) *value *= factor;
+  for (double& value : record.relative_viscosity) value = 1 + (value - 1) / factor;  // of the particle stress beyond eta_0
+  for (double& value : record.wall_relative_viscosity) value /= factor;              // of the whole stress
+  return record;
+}
+
 }  // namespace corpuscle::analysis

@@ -65,6 +65,7 @@ struct RunRecord {
   double capillary_number = 0, phi_geometric = 0, phi_effective = 0;
   double radius = 0, viscosity = 0, shear_rate = 0;
   std::array<double, 3> box{};
+  double rate_factor = 1;    ///< `shear_rate` over the one that the walls impose (referred_to)
   double interval = 0;       ///< strain between two times of the grid; NaN at rest
   double strain = 0;         ///< of the last sample
   std::int64_t samples = 0;  ///< in the file
@@ -81,5 +82,8 @@ struct RunRecord {
   Eigen::Index cell_count() const;
   double mean_effective_radius() const;  ///< over the cells; NaN without
 };
+
+/// The same run with `factor` times its shear rate as the unit of rates: capillary number, strains and viscosities change with it.
+RunRecord referred_to(double factor, RunRecord record);
 
 }  // namespace corpuscle::analysis

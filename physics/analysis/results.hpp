@@ -49,10 +49,16 @@ enum class MeanFlow {
   measured,  ///< the time average of the cells' velocities in layers of z
 };
 
+enum class RateOf {
+  walls,  ///< what the walls impose, on average over the gap
+  bulk,   ///< the measured slope of the velocity profile in the bulk
+};
+
 /// What the user may choose. NaN: chosen from the data.
 struct AnalysisOptions {
   double wall_layer = 4;                             ///< radii at each wall that are no bulk
   MeanFlow mean_flow = MeanFlow::measured;
+  RateOf rate = RateOf::walls;                       ///< the unit of rates (analyse_referred)
   double discard = statistics::not_a_number;         ///< strain
   double longest_lag = statistics::not_a_number;     ///< strain; else a quarter of the steady part
 };

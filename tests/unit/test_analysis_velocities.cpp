@@ -51,6 +51,35 @@ TEST_CASE("analysis: variances, relaxation and diffusion of Ornstein-Uhlenbeck c
   CHECK(found.estimate("diffusivity_msd_z").converged);
 }
 
+TEST_CASE("analysis: referred to the shear rate of the bulk", "[analysis]") {
+  SyntheticRun run{.times = 3000, .cells = 40};
+  const auto record = run.record();
+  const auto walls = analysis::analyse(record, from_start);
+  auto options = from_start;
+  CHECK(analysis::analyse_referred(record, options).first.rate_factor == 1);
+  options.rate = analysis::RateOf::bulk;
+  const auto [referred, bulk] = analysis::analyse_referred(record, options);
+  const double s = walls.estimate("shear_rate_bulk").value;
+  CHECK(referred.rate_factor == Approx(s));
+  CHECK(referred.capillary_number == Approx(s * record.capillary_number));
+  CHECK(bulk.estimate("shear_rate_bulk").value == Approx(1).epsilon(1e-6));
+  CHECK(bulk.estimate("relative_viscosity").value == Approx(walls.estimate("relative_viscosity_local_rate").value));
+  CHECK(bulk.estimate("whole_relative_viscosity").value - 1 == Approx((walls.estimate("whole_relative_viscosity").value - 1) / s));
+  CHECK(bulk.estimate("wall_relative_viscosity").value == Approx(walls.estimate("wall_relative_viscosity").value / s));
+  // A rate: velocities over s, times times s, D in rate x r^2 over s.
+  CHECK(bulk.estimate("velocity_variance_y").value == Approx(walls.estimate("velocity_variance_y").value / (s * s)));
+  CHECK(bulk.estimate("relaxation_time_y").value == Approx(walls.estimate("relaxation_time_y").value * s));
+  CHECK(bulk.estimate("diffusivity_vacf_y").value == Approx(walls.estimate("diffusivity_vacf_y").value / s));
+  CHECK(bulk.estimate("stress_fluctuation").value == Approx(walls.estimate("stress_fluctuation").value));
+
+  auto without = record;
+  without.cells = nullptr;
+  const auto unknown = analysis::analyse_referred(without, options);
+  CHECK(unknown.first.rate_factor == 1);
+  REQUIRE(!unknown.second.warnings.empty());
+  CHECK(says(unknown.second.warnings.back(), "referred to the shear rate of the walls"));
+}
+
 TEST_CASE("analysis: mean flow, measured and uniform", "[analysis]") {
   SyntheticRun run{.times = 3000, .cells = 40};
   const auto record = run.record();
