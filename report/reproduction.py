@@ -30,11 +30,11 @@ COLUMNS = [
 
 
 def runs_table(sweep):
-    lines = ["| φ_eff | Ca | cells | strain, of which used | " + " | ".join(name for name, _ in COLUMNS) + " |", "|" + "---|" * (4 + len(COLUMNS))]
+    lines = ["| φ_eff | Ca (walls) | Ca | cells | strain, of which used | " + " | ".join(name for name, _ in COLUMNS) + " |", "|" + "---|" * (5 + len(COLUMNS))]
     for run in sorted(sweep.runs, key=lambda r: (r.phi, -r.ca)):
         strain = float(run.info.get("strain") or 0)
         used = strain - float(run.settings.get("discarded_strain") or 0)
-        lines.append(f"| {run.phi:.3f} | {run.ca:.3g} | {run.info.get('cell_count')} | {strain:.1f}, {used:.1f} | " + " | ".join(text(value(run)) for _, value in COLUMNS) + " |")
+        lines.append(f"| {run.phi:.3f} | {run.nominal_ca:.3g} | {run.ca:.2g} | {run.info.get('cell_count')} | {strain:.1f}, {used:.1f} | " + " | ".join(text(value(run)) for _, value in COLUMNS) + " |")
     return "\n".join(lines)
 
 

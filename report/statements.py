@@ -161,12 +161,12 @@ def diffusion_trend(sweep):
 
 
 def diffusion_example(sweep):
-    runs = [r for r in sweep.runs if abs(r.ca / 0.008 - 1) < 0.05 and abs(r.phi - 0.33) < 0.02]
+    runs = [r for r in sweep.runs if abs(r.nominal_ca / 0.008 - 1) < 0.05 and abs(r.phi - 0.33) < 0.02]
     if not runs:
         return "the point is not in the sweep", UNTESTED
     run = runs[0]
     values = [mean_yz(run, f"diffusivity_{way}") for way in ("msd", "vacf", "gamma")]
-    return f"D/(γ̇r²) = {text(values[0])} (MSD), {text(values[1])} (∫C_v), {text(values[2])} (Γ formula)", judged([abs(v.value / 0.05 - 1) < 0.3 for v in values if v.exists()])
+    return f"D/(γ̇r²) at Ca = {run.ca:.2g} = {text(values[0])} (MSD), {text(values[1])} (∫C_v), {text(values[2])} (Γ formula)", judged([abs(v.value / 0.05 - 1) < 0.3 for v in values if v.exists()])
 
 
 def msd_exponents(sweep):
