@@ -164,6 +164,11 @@ class Sweep:
         self.flow_curves = [(number(entry.get("phi_effective")), Fit(entry.get("shear_thinning")), Fit(entry.get("yield_stress")))
                             for entry in data.get("flow_curves") or []]
 
+    def ca_range(self):
+        """(smallest, largest) capillary number of the runs: beyond those of the groups where it is referred to the bulk's shear rate."""
+        found = [r.ca for r in self.runs] + self.cas
+        return min(found), max(found)
+
     def flow_curve(self, phi):
         """(shear thinning, yield stress) fitted at a volume fraction of the sweep."""
         near = [entry for entry in self.flow_curves if abs(entry[0] / phi - 1) < 0.02]

@@ -6,15 +6,20 @@ from style import COLUMN, GREY, PAGE, draw_curve, draw_points, key, np, number_t
 
 
 def chosen_law(thinning, yielding):
-    """(kind, function of Ca, formula) of the fit that is drawn: with a yield stress where it is positive by more than two errors, else the power law."""
+    """(kind, function of Ca, formula) of the fit that is drawn: with a yield stress where it is positive by more than two errors, else the power law.
+    Those of viscosities that are not converged are drawn too, and the formula says so."""
     stress, b, q = yielding["yield_stress"], yielding["prefactor"], yielding["exponent"]
-    if yielding.converged and yielding.exists() and stress.value > 2 * stress.error:
+    if yielding.exists() and stress.value > 2 * stress.error:
         formula = f"{number_text(stress.value)} Ca$^{{-1}}$ + {number_text(b.value)} Ca$^{{{-q.value:.2f}}}$"
-        return "yield", lambda ca: stress.value / ca + b.value * ca ** -q.value, formula
+        return "yield", lambda ca: stress.value / ca + b.value * ca ** -q.value, formula + doubt(yielding)
     b, q = thinning["prefactor"], thinning["exponent"]
-    if thinning.converged and thinning.exists():
-        return "thinning", lambda ca: b.value * ca ** -q.value, f"{number_text(b.value)} Ca$^{{{-q.value:.2f}}}$"
+    if thinning.exists():
+        return "thinning", lambda ca: b.value * ca ** -q.value, f"{number_text(b.value)} Ca$^{{{-q.value:.2f}}}$" + doubt(thinning)
     return None
+
+
+def doubt(fit):
+    return "" if fit.converged else "\n(not converged)"
 
 
 def viscosity(sweep, tally):
@@ -30,7 +35,7 @@ def viscosity(sweep, tally):
         finish_against(axes, sweep, abscissa, r"relative viscosity $\eta/\eta_0$" if j == 0 else None)
         if abscissa == "phi":
             continue
-        ca = np.geomspace(sweep.cas[0] / 1.4, sweep.cas[-1] * 1.4, 100)
+        ca = np.geomspace(sweep.ca_range()[0] / 1.4, sweep.ca_range()[1] * 1.4, 100)
         for phi in reversed(sweep.phis):
             law = chosen_law(*sweep.flow_curve(phi))
             if law:

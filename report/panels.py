@@ -41,7 +41,7 @@ def draw_against(axes, sweep, abscissa, value_of, tally, hollow=False, line=True
 
 def finish_against(axes, sweep, abscissa, y_label=None):
     """Limits and ticks of a panel of draw_against."""
-    values = sweep.phis if abscissa == "phi" else sweep.cas
+    values = sweep.phis if abscissa == "phi" else sweep.ca_range()
     margin = 1.12 if abscissa == "phi" else 1.6
     axes.set_xlim(values[0] / margin, values[-1] * margin)
     if abscissa == "phi":
