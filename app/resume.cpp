@@ -115,9 +115,9 @@ int resume(const ResumeOptions& options) {
     // From now on this is the scene, also when the run is killed before its next checkpoint.
     state_length(directory, problem, lattice, outputs);
     checkpoints.forget_last();
-    checkpoints.write(*suspension, outputs, series, statistics ? &*statistics : nullptr, from.state.step, from.seconds);
+    checkpoints.write(*suspension, outputs, series, statistics, from.state.step, from.seconds);
   }
-  return run_to_end({directory, lattice, *suspension, outputs, series, statistics ? &*statistics : nullptr, checkpoints, from.state.step, from.seconds, wall_time, options.profile});
+  return run_to_end({directory, lattice, *suspension, outputs, series, statistics, checkpoints, from.state.step, from.seconds, wall_time, options.profile});
 }
 
 }  // namespace corpuscle::app

@@ -108,7 +108,7 @@ int run(const RunOptions& options) {
     if (!packed_before && !types.empty()) save_packing(directory / "packing.h5", packing);
     created.emplace(directory, problem, lattice, types);
     try {
-      checkpoints.write(*suspension, *created, series, statistics ? &*statistics : nullptr, 0, 0);  // from now on, whatever happens, the run can be resumed
+      checkpoints.write(*suspension, *created, series, statistics, 0, 0);  // from now on, whatever happens, the run can be resumed
     } catch (const SimulationError&) {  // a broken start: the time loop finds it too, and says so with the state for inspection
     }
   } catch (const OutputError& failed) {  // nothing has been computed: leave nothing behind
@@ -122,7 +122,7 @@ int run(const RunOptions& options) {
   }
   replaced->discard();
   packing.positions = {};
-  return run_to_end({directory, lattice, *suspension, *created, series, statistics ? &*statistics : nullptr, checkpoints, 0, 0, wall_time, options.profile});
+  return run_to_end({directory, lattice, *suspension, *created, series, statistics, checkpoints, 0, 0, wall_time, options.profile});
 }
 
 }  // namespace corpuscle::app

@@ -44,7 +44,7 @@ bool Checkpoints::due(std::int64_t step) const {
   return every_.count() > 0 && Clock::now() - last_ >= every_;
 }
 
-void Checkpoints::write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, const LiveStatistics* statistics, std::int64_t step, double seconds) {
+void Checkpoints::write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, const std::optional<LiveStatistics>& statistics, std::int64_t step, double seconds) {
   if (step == last_step_) return;
   const Kokkos::Profiling::ScopedRegion region("write_checkpoint");
   const auto begin = Clock::now();
@@ -52,7 +52,7 @@ void Checkpoints::write(Suspension& suspension, Outputs& outputs, const SeriesSu
   outputs.flush();
   contents_.state = suspension.state();
   contents_.summary = series.save();
-  if (statistics != nullptr) contents_.statistics = statistics->save();
+  if (statistics) contents_.statistics = statistics->save();
   contents_.seconds = seconds;
   store_.write(contents_, [&](int direction) { return suspension.population(direction); });
   contents_.state = {};
@@ -70,7 +70,7 @@ std::optional<LiveStatistics> live_statistics(const Problem& problem, const Latt
 namespace {
 
 void write_statistics(const ReadyRun& run) {
-  if (run.statistics == nullptr || run.statistics->samples() == 0) return;
+  if (!run.statistics || run.statistics->samples() == 0) return;
   const auto [record, found] = analysis::live_analysis(*run.statistics, run.lattice);
   replace_file(run.directory / "statistics.json", analysis_json(record, found).dump(1) + "\n", "the statistics");
 }
@@ -134,14 +134,13 @@ RunEnd simulate(const ReadyRun& run) {
     run.suspension.check();
     run.outputs.series(sample);
     run.series.add(sample);
-    if (run.statistics != nullptr) run.statistics->add(sample);
+    if (run.statistics) run.statistics->add(sample);
     return sample;
   };
   RunEnd end;
   end.steps = run.first_step;
   const auto checkpoint = [&] {
     run.checkpoints.write(run.suspension, run.outputs, run.series, run.statistics, end.steps, run.earlier_seconds + timer.seconds());
-    write_statistics(run);
   };
   Stop stop = Stop::none;
   try {
@@ -150,7 +149,10 @@ RunEnd simulate(const ReadyRun& run) {
       const std::int64_t step = end.steps;
       stop = stop_asked(run);
       if (stop != Stop::none) break;
-      if (run.checkpoints.due(step)) checkpoint();
+      if (run.checkpoints.due(step)) {
+        checkpoint();
+        write_statistics(run);
+      }
       if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) run.outputs.snapshot(run.suspension);
       if (step % lattice.series_every == 0) {
         const Sample sample = sample_now();

@@ -23,7 +23,7 @@ class Checkpoints {
   bool due(std::int64_t step) const;
   /// Writes one unless this step has one, after everything measured before it has been flushed. @throws SimulationError when the state is no good one,
   /// OutputError
-  void write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, const LiveStatistics* statistics, std::int64_t step, double seconds);
+  void write(Suspension& suspension, Outputs& outputs, const SeriesSummary& series, const std::optional<LiveStatistics>& statistics, std::int64_t step, double seconds);
   /// Even if this step has one: the scene has changed.
   void forget_last() { last_step_ = -1; }
   /// How long the last one took.
@@ -50,7 +50,7 @@ struct ReadyRun {
   Suspension& suspension;
   Outputs& outputs;
   SeriesSummary& series;
-  LiveStatistics* statistics;  ///< null: none asked for
+  std::optional<LiveStatistics>& statistics;
   Checkpoints& checkpoints;
   std::int64_t first_step = 0;
   double earlier_seconds = 0;  ///< time of the steps before

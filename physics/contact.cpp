@@ -216,19 +216,13 @@ int fullest_bin(const Array1<int>& begin, const int bins) {
   return fullest;
 }
 
-std::int64_t sum_of(const Array1<int>& counts, const int rows) {
-  std::int64_t total = 0;
-  Kokkos::parallel_reduce("contact_total", Kokkos::RangePolicy<ExecSpace>(0, rows), KOKKOS_LAMBDA(const int v, std::int64_t& sum) { sum += counts(v); }, total);
-  return total;
-}
-
-/// In place: the counts in begin(0) ... begin(n - 1) become offsets, begin(n) the total, which is also returned.
-int counts_to_offsets(const Array1<int>& begin) {
+/// In place: the counts in begin(0) ... begin(n - 1) become offsets, begin(n) the total, which is also returned. Offsets are right where the total is an int.
+std::int64_t counts_to_offsets(const Array1<int>& begin) {
   const int rows = int(begin.extent(0)) - 1;
-  int total = 0;
-  Kokkos::parallel_scan("contact_scan", Kokkos::RangePolicy<ExecSpace>(0, rows + 1), KOKKOS_LAMBDA(const int v, int& sum, const bool final) {
+  std::int64_t total = 0;
+  Kokkos::parallel_scan("contact_scan", Kokkos::RangePolicy<ExecSpace>(0, rows + 1), KOKKOS_LAMBDA(const int v, std::int64_t& sum, const bool final) {
     const int count = v < rows ? begin(v) : 0;
-    if (final) begin(v) = sum;
+    if (final) begin(v) = static_cast<int>(sum);
     sum += count;
   }, total);
   return total;
@@ -284,12 +278,13 @@ void Contact::update_lists(const VertexVectors& positions) {
   Kokkos::parallel_reduce("contact_own_images", Kokkos::RangePolicy<ExecSpace>(0, vertices), FarFromFirst{box_, positions, cell_of_vertex_, first_vertex_, reach}, far);
   FindNeighbours find{box_, grid_, positions, bins_.begin(), bins_.order(), binned_, rows_, reach, far > 0, false};
   Kokkos::parallel_for("contact_count", portions(vertices), find);
-  if (const std::int64_t pairs = sum_of(rows_.begin, vertices); pairs > std::numeric_limits<int>::max()) {
+  const std::int64_t pairs = counts_to_offsets(rows_.begin);
+  if (pairs > std::numeric_limits<int>::max()) {
     rebuilds_ = 0;
     throw SimulationError(fmt::format("{} pairs of vertices are in reach of contact forces, {} are supported: lower contact.range, or the state is broken.", pairs,
                                       std::numeric_limits<int>::max()));
   }
-  const int total = counts_to_offsets(rows_.begin);
+  const int total = int(pairs);
   if (int(rows_.list.extent(0)) < total)
     rows_.list = Array1<int>(Kokkos::view_alloc(Kokkos::WithoutInitializing, "contact_list"), total + total / 4);
   find.rows = rows_;

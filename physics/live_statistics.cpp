@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "physics/statistics/correlation.hpp"
 #include "physics/statistics/diffusion.hpp"
+#include "physics/suspension_sample.hpp"
 
 namespace corpuscle {
 namespace {
@@ -26,7 +27,7 @@ std::span<const double> take(std::span<const double>& from, std::size_t size) {
 
 LiveStatistics::LiveStatistics(const LatticeParameters& lattice, bool walls, double discard)
     : cells_(0), every_(lattice.series_every), shear_rate_(lattice.shear_rate), radius_(lattice.radius), height_(lattice.nodes[2]),
-      layer_(walls && height_ > 8 * radius_ ? 4 * radius_ : 0) {
+      layer_(corpuscle::wall_layer(lattice, walls)) {
   for (const auto& type : lattice.cells) cells_ += static_cast<std::size_t>(type.count);
   const auto discarded = static_cast<std::int64_t>(std::ceil(discard * static_cast<double>(lattice.steps)));
   first_step_ = (discarded + every_ - 1) / every_ * every_;

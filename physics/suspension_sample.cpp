@@ -11,7 +11,7 @@ namespace corpuscle {
 void average_over_cells(Sample& sample, const std::vector<CellType>& types, const LatticeParameters& lattice, bool walls) {
   const double box = lattice.box_volume();
   const double height = lattice.nodes[2];
-  const double layer = walls && height > 8 * lattice.radius ? 4 * lattice.radius : 0;
+  const double layer = wall_layer(lattice, walls);
   const double bulk = box * (height - 2 * layer) / height;
   for (std::size_t t = 0; t < types.size(); ++t) {
     const CellType& type = types[t];

@@ -5,6 +5,9 @@
 
 namespace corpuscle {
 
+/// Thickness of the layers at the walls that are no bulk: 4 r; 0 where no bulk would be left, and without walls.
+inline double wall_layer(const LatticeParameters& lattice, bool walls) { return walls && lattice.nodes[2] > 8 * lattice.radius ? 4 * lattice.radius : 0; }
+
 /// Fills everything of `sample` that follows from `sample.cells`: stresses, viscosities, normal stress differences, drifts, mean deformation.
 /// @param types as in `lattice.cells`, made from them
 /// @param walls whether the bulk excludes a layer of 4 r at z = 0 and z = L_z

@@ -151,10 +151,14 @@ def gap(sweep, tally):
     return Drawn(figure, "Gap l between cells from the dissipation balance falls with φ as 2r′(φ^−⅓ − 1) for φ ≳ 0.2, with r′ ≈ 2 lattice units at r = 9.", seen)
 
 
+def total_variance(run):
+    return combined(lambda *v: sum(v), [run.estimate(f"velocity_variance_{n}") for n in "xyz"])
+
+
 def balance_of(run, radius):
     """(right side, left side) of the balance in r²: [(η/η₀ − 1)/(1 − φ) − 1] l² with l = 2r′(φ^(−1/3) − 1), and Σ<δu²>/γ̇²."""
     phi = run.phi_bulk()
-    left = combined(lambda *v: sum(v), [run.estimate(f"velocity_variance_{n}") for n in "xyz"])
+    left = total_variance(run)
     right = combined(lambda eta: ((eta - 1) / (1 - phi) - 1) * (radius * gap_theory(phi)) ** 2, [run.estimate("relative_viscosity")])
     return right, left
 

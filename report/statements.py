@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from analysis_data import combined
-from figures_velocity import balance_of, radius_fit
+from figures_velocity import balance_of, radius_fit, total_variance
 from style import in_words, value_text
 
 HOLDS, PARTLY, FAILS, UNTESTED = "holds", "holds partly", "does not hold", "not tested"
@@ -27,9 +27,23 @@ def judged(checks):
     return HOLDS if all(checks) else PARTLY if any(checks) else FAILS
 
 
-def by_phi(sweep, values):
-    """"φ = 0.12: ..., 0.24: ..." from pairs."""
+def by_phi(values):
+    """"0.12: ...; 0.24: ..." from pairs."""
     return "; ".join(f"{phi:.2f}: {words}" for phi, words in values)
+
+
+def columns(sweep, value_of):
+    """(Ca, [(phi, value)]) for each capillary number with three volume fractions or more."""
+    found = [(ca, sorted(sweep.of(ca=ca), key=lambda r: r.phi)) for ca in sweep.cas]
+    return [(ca, [(r.phi_group, value_of(r)) for r in runs]) for ca, runs in found if len(runs) >= 3]
+
+
+def columns_text(found):
+    return ". ".join(f"Ca = {ca:g}: " + by_phi([(phi, text(v)) for phi, v in pairs]) for ca, pairs in found)
+
+
+def rising_with_falling_ca(sweep, value_of):
+    return [rises for phi in sweep.phis for rises in rising([(r.ca, value_of(r)) for r in sorted(sweep.of(phi=phi), key=lambda r: -r.ca)])]
 
 
 def exponents(sweep):
@@ -41,18 +55,18 @@ def exponents(sweep):
 def newtonian(sweep):
     found = exponents(sweep)
     low = [q for phi, q in found if phi < 0.15]
-    return "q of η ~ Ca^−q at φ: " + by_phi(sweep, [(phi, text(q)) for phi, q in found if phi < 0.3]), judged(q.value < 0.1 for q in low)
+    return "q of η ~ Ca^−q at φ: " + by_phi([(phi, text(q)) for phi, q in found if phi < 0.3]), judged(q.value < 0.1 for q in low)
 
 
 def thinning(sweep):
     found = [(phi, q) for phi, q in exponents(sweep) if phi > 0.4]
-    return "q at φ: " + by_phi(sweep, [(phi, text(q)) for phi, q in found]), judged(abs(q.value - 0.5) < 0.15 for phi, q in found if phi > 0.6)
+    return "q at φ: " + by_phi([(phi, text(q)) for phi, q in found]), judged(abs(q.value - 0.5) < 0.15 for phi, q in found if phi > 0.6)
 
 
 def yield_stress(sweep):
     found = [(phi, sweep.flow_curve(phi)[1]) for phi in sweep.phis]
     shown = [(phi, fit["yield_stress"], fit["exponent"]) for phi, fit in found if fit["yield_stress"].exists()]
-    words = "σ_y in η₀γ̇ Ca at φ: " + by_phi(sweep, [(phi, f"{text(s)} (q = {text(q)})") for phi, s, q in shown]) if shown else "no fit: " + found[0][1].reason
+    words = "σ_y in η₀γ̇ Ca at φ: " + by_phi([(phi, f"{text(s)} (q = {text(q)})") for phi, s, q in shown]) if shown else "no fit: " + found[0][1].reason
     words += f"; φ_c = {text(sweep.critical)}" if sweep.critical.exists() else f"; no φ_c: {sweep.critical.reason}"
     present = lambda s: s.value > 2 * s.error
     below, above = [not present(s) for phi, s, q in shown if phi < 0.6], [present(s) for phi, s, q in shown if phi > 0.7]
@@ -67,18 +81,9 @@ def rising(pairs):
 
 
 def variances(sweep):
-    total = lambda r: combined(lambda *v: sum(v), [r.estimate(f"velocity_variance_{k}") for k in "xyz"])
-    parts, checks = [], []
-    for ca in sweep.cas:
-        runs = sorted(sweep.of(ca=ca), key=lambda r: r.phi)
-        if len(runs) < 3:
-            continue
-        pairs = [(r.phi_group, total(r)) for r in runs]
-        checks += rising(pairs)
-        parts.append(f"Ca = {ca:g}: " + by_phi(sweep, [(phi, text(v)) for phi, v in pairs]))
-    for phi in sweep.phis:
-        checks += rising([(r.ca, total(r)) for r in sorted(sweep.of(phi=phi), key=lambda r: -r.ca)])
-    return "Σ⟨δu²⟩/(γ̇r)² at φ: " + ". ".join(parts), judged(checks)
+    found = columns(sweep, total_variance)
+    checks = [rises for _, pairs in found for rises in rising(pairs)] + rising_with_falling_ca(sweep, total_variance)
+    return "Σ⟨δu²⟩/(γ̇r)² at φ: " + columns_text(found), judged(checks)
 
 
 def tails(sweep):
@@ -121,7 +126,7 @@ def balance(sweep):
 
 
 def variance_span(sweep):
-    values = [combined(lambda *v: sum(v), [r.estimate(f"velocity_variance_{k}") for k in "xyz"]).value for r in sweep.runs if r.phi_group >= 0.2]
+    values = [total_variance(r).value for r in sweep.runs if r.phi_group >= 0.2]
     return max(values) / min(values)
 
 
@@ -137,31 +142,19 @@ def stretched(sweep):
 
 
 def relaxation(sweep):
-    parts, checks = [], []
-    for ca in sweep.cas:
-        runs = sorted(sweep.of(ca=ca), key=lambda r: r.phi)
-        pairs = [(r.phi_group, mean_yz(r, "relaxation_time")) for r in runs]
-        if len(runs) < 3:
-            continue
-        parts.append(f"Ca = {ca:g}: " + by_phi(sweep, [(phi, text(v)) for phi, v in pairs]))
-        checks += [0.1 < v.value < 2 for _, v in pairs if v.exists()]
-    return "γ̇τ_v (mean of y and z) at φ: " + ". ".join(parts), judged(checks)
+    found = columns(sweep, lambda r: mean_yz(r, "relaxation_time"))
+    return "γ̇τ_v (mean of y and z) at φ: " + columns_text(found), judged(0.1 < v.value < 2 for _, pairs in found for _, v in pairs if v.exists())
 
 
 def diffusion_trend(sweep):
-    parts, checks = [], []
-    for ca in sweep.cas:
-        runs = sorted(sweep.of(ca=ca), key=lambda r: r.phi)
-        if len(runs) < 3:
-            continue
-        pairs = [(r.phi_group, mean_yz(r, "diffusivity_vacf")) for r in runs]
-        parts.append(f"Ca = {ca:g}: " + by_phi(sweep, [(phi, text(v)) for phi, v in pairs]))
+    found = columns(sweep, lambda r: mean_yz(r, "diffusivity_vacf"))
+    checks = []
+    for ca, pairs in found:
         values = [(phi, v.value) for phi, v in pairs if v.exists()]
-        if ca == min(c for c in sweep.cas if len(sweep.of(ca=c)) > 2) and values:
-            checks.append(0.55 < max(values, key=lambda e: e[1])[0] < 0.8)
-        elif values:
-            checks.append(max(values, key=lambda e: e[1])[0] > 0.6)
-    return "D/(γ̇r²) from the VACF (mean of y and z) at φ: " + ". ".join(parts), judged(checks)
+        if values:
+            largest = max(values, key=lambda e: e[1])[0]
+            checks.append(0.55 < largest < 0.8 if ca == found[0][0] else largest > 0.6)
+    return "D/(γ̇r²) from the VACF (mean of y and z) at φ: " + columns_text(found), judged(checks)
 
 
 def diffusion_example(sweep):
@@ -184,26 +177,13 @@ def msd_exponents(sweep):
 
 
 def stress_fluctuations(sweep):
-    parts, checks = [], []
-    for ca in sweep.cas:
-        runs = sorted(sweep.of(ca=ca), key=lambda r: r.phi)
-        if len(runs) < 3:
-            continue
-        parts.append(f"Ca = {ca:g}: " + by_phi(sweep, [(r.phi_group, text(r.estimate("stress_fluctuation"))) for r in runs]))
-    for phi in sweep.phis:
-        checks += rising([(r.ca, r.estimate("stress_fluctuation")) for r in sorted(sweep.of(phi=phi), key=lambda r: -r.ca)])
-    return "RMS/mean of the stresslets σ_xz of single cells at φ: " + ". ".join(parts), judged(checks)
+    value_of = lambda r: r.estimate("stress_fluctuation")
+    return "RMS/mean of the stresslets σ_xz of single cells at φ: " + columns_text(columns(sweep, value_of)), judged(rising_with_falling_ca(sweep, value_of))
 
 
 def stress_relaxation(sweep):
-    parts, checks = [], []
-    for ca in sweep.cas:
-        runs = sorted(sweep.of(ca=ca), key=lambda r: r.phi)
-        if len(runs) < 3:
-            continue
-        parts.append(f"Ca = {ca:g}: " + by_phi(sweep, [(r.phi_group, text(r.estimate("stresslet_relaxation_time"))) for r in runs]))
-        checks += [v.estimate("stresslet_relaxation_time").value < 3 for v in runs if v.estimate("stresslet_relaxation_time").exists()]
-    return "γ̇τ of single cells' stresslets at φ: " + ". ".join(parts), judged(checks)
+    found = columns(sweep, lambda r: r.estimate("stresslet_relaxation_time"))
+    return "γ̇τ of single cells' stresslets at φ: " + columns_text(found), judged(v.value < 3 for _, pairs in found for _, v in pairs if v.exists())
 
 
 # (statement of the paper, rule of the verdict, function)
