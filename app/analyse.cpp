@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/analyse.hpp"
 #include "app/commands.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
@@ -55,6 +56,17 @@ bool is_current(const fs::path& run, const analysis::AnalysisOptions& choices) {
   }
 }
 
+}  // namespace
+
+Json analysed(const fs::path& run, const analysis::AnalysisOptions& choices, bool* was_there) {
+  const bool current = is_current(run, choices);
+  if (!current) analyse_run(run, run / "analysis.json", choices);
+  if (was_there != nullptr) *was_there = current;
+  return read_analysis(run / "analysis.json");
+}
+
+namespace {
+
 int analyse_sweep(const fs::path& directory, const fs::path& output, const SweepRecord& sweep, const analysis::AnalysisOptions& choices) {
   require_replaceable(output, sweep_analysis_format, {".md", ".csv", ".h5"});
   std::vector<AnalysedRun> runs;
@@ -69,11 +81,10 @@ int analyse_sweep(const fs::path& directory, const fs::path& output, const Sweep
       continue;
     }
     try {
-      const bool current = is_current(place, choices);
-      if (!current) analyse_run(place, place / "analysis.json", choices);
+      bool current = false;
+      runs.push_back({run.name, analysed(place, choices, &current)});
       fmt::print("{} of {}: {} {}\n", number, sweep.runs.size(), run.name, current ? "was analysed before" : "analysed");
       std::fflush(stdout);
-      runs.push_back({run.name, read_analysis(place / "analysis.json")});
       runs.back().analysis.erase("curves");  // thousands of runs have megabytes of them
       runs.back().fits = run.state != RunState::failed;
       if (run.state == RunState::failed) warnings.push_back(fmt::format("{}: failed ({}): analysed as far as it came, left out of the fits", run.name, run.message));

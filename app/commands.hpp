@@ -48,6 +48,12 @@ struct SweepOptions {
 /// Exit code 0: all finished, 1: some failed, 75 and 130: stopped with checkpoints.
 int sweep(const SweepOptions& options);
 
+struct TradeoffOptions : SweepOptions {
+  bool no_run = false;  ///< only compare what is there
+};
+/// `sweep` is the path of the study. Exit code as of sweep.
+int tradeoff(const TradeoffOptions& options);
+
 struct CheckOptions {
   std::string directory;
   bool json = false;

@@ -18,7 +18,8 @@ Start here:
   corpuscle resume results/a                                 go on where it was stopped or killed
   corpuscle analyse results/a                                viscosity, fluctuations, diffusion, shapes ... with errors
   corpuscle run  scenes/quickstart.toml --output results/b --set flow.capillary_number=0.02 --set run.strain=5
-  corpuscle sweep flow_curve.toml --output results/curve     a matrix of scenes (docs/sweep.md))";
+  corpuscle sweep flow_curve.toml --output results/curve     a matrix of scenes (docs/sweep.md)
+  corpuscle tradeoff study.toml --output results/study       error against cost over settings of accuracy (docs/tradeoff.md))";
 
 constexpr const char* ending = R"(A scene is a small TOML file, all keys are in docs/scene.md; what a run writes is in docs/outputs.md.
 Exit codes: 0 done, 1 unexpected error, failed output or a failed run of a sweep, 2 bad input (nothing was written), 3 the simulation became
@@ -34,6 +35,15 @@ void add_scene_options(CLI::App& command, corpuscle::app::SceneOptions& options)
   command.add_option("--threads", options.threads, "Number of host threads (default: OMP_NUM_THREADS, else all cores)")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+}
+
+CLI::Option* add_sweep_options(CLI::App& command, corpuscle::app::SweepOptions& options) {
+  command.add_option("-o,--output", options.output, "Directory for all runs; created")->type_name("DIR")->required();
+  command.add_flag("--dry-run", options.dry_run, "Print all points with cells, nodes, steps, memory and time; writes nothing");
+  command.add_option("--jobs", options.jobs, "Runs at a time (default: as many as cores and memory allow)")->type_name("N")->check(CLI::Range(1, 4096));
+  command.add_option("--threads", options.threads, "Host threads of each run (default: by its number of nodes)")->type_name("N")->check(CLI::Range(1, 4096));
+  command.add_option("--wall-time", options.wall_time, "Stop all runs with checkpoints after this time, counted from the start of the program (exit code 75)")->type_name("HH:MM:SS");
+  return command.add_flag("--job-array", options.job_array, "Run nothing; write DIR/job_array.sh, a Slurm job array with a task for each point")->excludes("--dry-run");
 }
 
 int fail(int code, const char* message) {
@@ -81,12 +91,13 @@ int main(int argc, char** argv) {
   app::SweepOptions sweep_options;
   auto* sweep = program.add_subcommand("sweep", "Run a matrix of scenes side by side (docs/sweep.md); the same command goes on where it was stopped or killed, and runs points that were added");
   sweep->add_option("SWEEP", sweep_options.sweep, "Sweep file (TOML): a base scene and the values that vary")->required();
-  sweep->add_option("-o,--output", sweep_options.output, "Directory for all runs; created")->type_name("DIR")->required();
-  sweep->add_flag("--dry-run", sweep_options.dry_run, "Print all points with cells, nodes, steps, memory and time; writes nothing");
-  sweep->add_option("--jobs", sweep_options.jobs, "Runs at a time (default: as many as cores and memory allow)")->type_name("N")->check(CLI::Range(1, 4096));
-  sweep->add_option("--threads", sweep_options.threads, "Host threads of each run (default: by its number of nodes)")->type_name("N")->check(CLI::Range(1, 4096));
-  sweep->add_option("--wall-time", sweep_options.wall_time, "Stop all runs with checkpoints after this time, counted from the start of the program (exit code 75)")->type_name("HH:MM:SS");
-  sweep->add_flag("--job-array", sweep_options.job_array, "Run nothing; write DIR/job_array.sh, a Slurm job array with a task for each point")->excludes("--dry-run");
+  add_sweep_options(*sweep, sweep_options);
+
+  app::TradeoffOptions tradeoff_options;
+  auto* tradeoff = program.add_subcommand("tradeoff", "Run a scene over settings of accuracy and report error against cost: the front, what each knob buys (docs/tradeoff.md); goes on where it was stopped");
+  tradeoff->add_option("STUDY", tradeoff_options.sweep, "Study file (TOML): a sweep with a table [study]")->required();
+  auto* tradeoff_job_array = add_sweep_options(*tradeoff, tradeoff_options);
+  tradeoff->add_flag("--no-run", tradeoff_options.no_run, "Run nothing, compare the runs that are there")->excludes("--dry-run")->excludes(tradeoff_job_array)->excludes("--jobs")->excludes("--wall-time");
 
   app::CheckOptions check_options;
   auto* check = program.add_subcommand("check", "Verify the results in a directory, of a finished, broken or running run: 0 all is well, 1 problems, 2 not results of a run");
@@ -127,6 +138,7 @@ int main(int argc, char** argv) {
     if (*stability) return app::stability(stability_options);
     if (*resume) return app::resume(resume_options);
     if (*sweep) return app::sweep(sweep_options);
+    if (*tradeoff) return app::tradeoff(tradeoff_options);
     return *plan ? app::plan(plan_options) : app::run(run_options);
   } catch (const InputError& error) {
     return fail(exit_code::bad_input, error.what());

@@ -12,6 +12,7 @@
 #include "app/output_directory.hpp"
 #include "app/sweep_directory.hpp"
 #include "app/sweep_execute.hpp"
+#include "app/sweep_points.hpp"
 #include "app/sweep_plan.hpp"
 #include "app/sweep_schedule.hpp"
 #include "core/error.hpp"
@@ -125,25 +126,23 @@ int make_job_array(const SweepDirectory& directory, const std::vector<PlannedPoi
 
 }  // namespace
 
-int sweep(const SweepOptions& options) {
+int run_points(const std::string& scene, std::vector<PlannedPoint>& points, const SweepOptions& options) {
   const WallTime wall_time(options.wall_time.empty() ? 0 : parse_wall_time(options.wall_time));
   if (options.job_array && options.jobs > 0) throw InputError("--jobs has no effect with --job-array: Slurm decides how many tasks run at a time (sbatch --array=1-28%4 limits them).");
-  const Sweep sweep = read_sweep(options.sweep);
-  std::vector<PlannedPoint> points = plan_points(sweep);
   print_warnings(warnings_of(points));
   const SweepLimits limits{options.jobs, options.threads};
   if (options.dry_run) {
-    const SweepDirectory directory(options.output, sweep.scene, points);
+    const SweepDirectory directory(options.output, scene, points);
     print_table(directory, points, work_of(directory, points, this_machine(), limits));
     print_left_over(directory);
     return exit_code::success;
   }
   if (!options.job_array) require_memory(points);
   require_writable(options.output);
-  (void)SweepDirectory(options.output, sweep.scene, points);  // refuses what it must before a directory is made
+  (void)SweepDirectory(options.output, scene, points);  // refuses what it must before a directory is made
   create_output_directory(options.output);
   const DirectoryLock lock(options.output);
-  SweepDirectory directory(options.output, sweep.scene, points);
+  SweepDirectory directory(options.output, scene, points);
   directory.write();
   print_left_over(directory);
   if (options.job_array) return make_job_array(directory, points, options);
@@ -154,6 +153,12 @@ int sweep(const SweepOptions& options) {
     std::cout << fmt::format("{} points, {} left: {} at a time, predicted {}\n", points.size(), work.points.size(), work.slots.at_once(), time_text(work.slots.seconds()))
               << std::flush;
   return execute(directory, points, work, wall_time);
+}
+
+int sweep(const SweepOptions& options) {
+  const Sweep sweep = read_sweep(options.sweep);
+  std::vector<PlannedPoint> points = plan_points(sweep);
+  return run_points(sweep.scene, points, options);
 }
 
 }  // namespace corpuscle::app

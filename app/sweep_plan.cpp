@@ -67,18 +67,19 @@ std::string kind_of(const Problem& problem) {
 
 }  // namespace
 
-std::vector<PlannedPoint> plan_points(const Sweep& sweep) {
+std::vector<PlannedPoint> plan_points(const Sweep& sweep, std::vector<RefusedPoint>* refused) {
   constexpr std::size_t most_told = 50;
   std::vector<PlannedPoint> planned;
   std::vector<std::string> problems;
-  for (const SweepPoint& point : sweep.points) {
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
     try {
-      planned.push_back(plan_point(sweep.scene, point));
+      planned.push_back(plan_point(sweep.scene, sweep.points[i]));
     } catch (const InputError& error) {
-      problems.push_back(fmt::format("\n  {}: {}", point.name, error.what()));
+      problems.push_back(fmt::format("\n  {}: {}", sweep.points[i].name, error.what()));
+      if (refused != nullptr) refused->push_back({i, error.what()});
     }
   }
-  if (problems.empty()) return planned;
+  if (problems.empty() || (refused != nullptr && !planned.empty())) return planned;
   const std::size_t told = std::min(problems.size(), most_told);
   throw InputError(fmt::format("{} of {} points can't be run, so nothing was started:{}{}", problems.size(), sweep.points.size(),
                                fmt::join(problems.begin(), problems.begin() + static_cast<std::ptrdiff_t>(told), ""),

@@ -18,8 +18,14 @@ struct PlannedPoint {
   double bytes = 0;  ///< MemoryEstimate::peak
 };
 
-/// Reads and plans each scene; allocates none. @throws InputError that lists every point that can't be run, with what is wrong with it.
-std::vector<PlannedPoint> plan_points(const Sweep& sweep);
+/// A point that can't be run, and why.
+struct RefusedPoint {
+  std::size_t point = 0;  ///< of the sweep
+  std::string reason;
+};
+
+/// Reads and plans each scene; allocates none. @throws InputError that lists every point that can't be run, with what is wrong with it, unless `refused` takes them.
+std::vector<PlannedPoint> plan_points(const Sweep& sweep, std::vector<RefusedPoint>* refused = nullptr);
 
 /// Warnings of all points, each text once with the points that it is about.
 std::vector<std::string> warnings_of(const std::vector<PlannedPoint>& points);

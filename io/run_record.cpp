@@ -132,6 +132,7 @@ void read_lattice(const hdf5::File& file, RunRecord& record) {
   const auto number = [&](const char* name) { return file.number_attribute("/lattice", name); };
   record.capillary_number = number("capillary_number");
   record.phi_geometric = number("phi_geometric");
+  record.phi_nominal = number("phi_nominal");
   record.phi_effective = number("phi_effective");
   record.radius = number("radius");
   record.viscosity = number("viscosity");

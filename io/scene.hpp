@@ -23,6 +23,9 @@ std::string to_toml(const Problem& problem);
 /// What differs between two scenes, one sentence a key: "run.strain = 10 there, 20 here"; `there` and `here` name the first and the second. Empty: both are the same.
 std::vector<std::string> scene_differences(const Problem& first, const Problem& second, std::string_view there, std::string_view here);
 
+/// The value of one key ("cells.0.count") as the merged scene has it; empty where it isn't set. @throws InputError for a key that no scene has, or a cell type that this one hasn't
+std::string scene_value(const Problem& problem, const std::string& key);
+
 /// Markdown tables of all keys, one per section, made from the table that drives the reader; docs/scene.md contains them verbatim.
 std::string scene_key_reference();
 

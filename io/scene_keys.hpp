@@ -47,6 +47,8 @@ struct Key {
 std::span<const Key> keys();
 const Key* find_key(std::string_view name);
 bool is_section(std::string_view name);
+/// "cells.0.membrane.law" -> "cells.*.membrane.law", the name in the table of keys.
+std::string pattern_of(std::string_view path);
 
 /// "number", "whole number", "true or false", "string", "3 numbers" …
 std::string type_name(const Key& key);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <type_traits>
 
+#include "core/error.hpp"
 #include "io/scene.hpp"
 #include "io/scene_keys.hpp"
 #include "io/scene_si.hpp"
@@ -191,6 +193,17 @@ std::vector<std::string> scene_differences(const Problem& first, const Problem& 
       compare(key, fmt::format("cells.{}{}", i, key.name.substr(std::string_view("cells.*").size())), a.cells[i], b.cells[i]);
   }
   return differences;
+}
+
+std::string scene_value(const Problem& problem, const std::string& key) {
+  const scene::Key* known = scene::find_key(scene::pattern_of(key));
+  if (known == nullptr) throw InputError(fmt::format("{} isn't a key of a scene", key));
+  Problem copy = problem;
+  CellSpec none;
+  if (!key.starts_with("cells.")) return scene::value_text(*known, known->field(copy, none));
+  const std::size_t type = std::strtoull(key.c_str() + std::string_view("cells.").size(), nullptr, 10);
+  if (type >= copy.cells.size()) throw InputError(fmt::format("{}: the scene has no such cell type", key));
+  return scene::value_text(*known, known->field(copy, copy.cells[type]));
 }
 
 std::string scene_key_reference() {

@@ -35,7 +35,4 @@ std::string where(const Document& document, const std::string& path, const toml:
 std::string shown(const toml::node& node);
 std::string one_line(std::string_view text, std::size_t longest = 60);
 
-/// "cells.0.membrane.law" -> "cells.*.membrane.law", the name in the table of keys.
-std::string pattern_of(std::string_view path);
-
 }  // namespace corpuscle::scene

@@ -44,11 +44,6 @@ const Override* find(const std::vector<Override>& overrides, const std::string& 
   return found == overrides.end() ? nullptr : &*found;
 }
 
-struct Axis {
-  std::string key;
-  std::vector<std::string> values;
-};
-
 /// [[where]]
 struct Rule {
   std::vector<std::pair<std::string, Value>> match;
@@ -58,12 +53,13 @@ struct Rule {
 
 class SweepReader {
  public:
-  SweepReader(std::string_view text, const std::string& origin)
-      : origin_(one_line(origin, 300)), path_(origin), root_(scene::parse_table(text, origin_, "a sweep starts with scene = \"base.toml\" and [[axis]], see docs/sweep.md")) {}
+  SweepReader(std::string_view text, const std::string& origin, std::string_view more)
+      : origin_(one_line(origin, 300)), path_(origin), more_(more), root_(scene::parse_table(text, origin_, "a sweep starts with scene = \"base.toml\" and [[axis]], see docs/sweep.md")) {}
 
   Sweep read() {
-    static constexpr std::array<std::string_view, 4> known{"scene", "axis", "also", "where"};
-    allow_only(root_, known, "a sweep");
+    std::vector<std::string_view> known{"scene", "axis", "also", "where"};
+    if (!more_.empty()) known.push_back(more_);
+    allow_only(root_, known, more_.empty() ? "a sweep" : "a study");
     Sweep sweep;
     const toml::node* scene = root_.get("scene");
     if (scene == nullptr) throw InputError(fmt::format("{}: `scene` is missing: name the scene that varies, for example scene = \"base.toml\"", origin_));
@@ -75,10 +71,11 @@ class SweepReader {
     if (given_.empty()) throw InputError(fmt::format("{}: has no points: write at least one [[axis]] with key and values, or [[also]], see docs/sweep.md", origin_));
     for (const toml::table* table : tables("where")) read_rule(*table);
 
-    const std::vector<std::string> names = sweep_names(given_);
+    const std::vector<std::string> names = sweep_names(named_);
     check_names(names);
     for (std::size_t i = 0; i < given_.size(); ++i) sweep.points.push_back({names[i], given_[i]});
     for (const Rule& rule : rules_) apply(rule, sweep);
+    sweep.axes = std::move(axes_);
     return sweep;
   }
 
@@ -153,38 +150,73 @@ class SweepReader {
   }
 
   void read_axis(const toml::table& table) {
-    static constexpr std::array<std::string_view, 2> known{"key", "values"};
+    static constexpr std::array<std::string_view, 4> known{"key", "values", "name", "settings"};
     allow_only(table, known, "[[axis]]");
+    if (table.contains("name") || table.contains("settings")) return read_settings(table);
     const toml::node *key = table.get("key"), *values = table.get("values");
     if (key == nullptr || !key->is_string()) fail(key == nullptr ? table : *key, "an [[axis]] needs key = \"...\", a key of the scene such as \"flow.capillary_number\"");
-    Axis axis{key->as_string()->get(), {}};
-    require_key(axis.key, *key);
-    for (const Axis& other : axes_)
-      if (other.key == axis.key) fail(*key, fmt::format("{} has an axis already: put all its values into one", axis.key));
+    SweepAxis axis{key->as_string()->get(), true, {}};
+    require_key(axis.name, *key);
+    if (rank(axis.name) < axes_.size()) fail(*key, fmt::format("{} has an axis already: put all its values into one", axis.name));
     if (values == nullptr || !values->is_array() || values->as_array()->empty())
-      fail(values == nullptr ? table : *values, fmt::format("the axis of {} needs values = [...], a list with at least one value", axis.key));
+      fail(values == nullptr ? table : *values, fmt::format("the axis of {} needs values = [...], a list with at least one value", axis.name));
     for (const toml::node& node : *values->as_array()) {
-      const std::string text = value(axis.key, node).text;
-      if (std::any_of(axis.values.begin(), axis.values.end(), [&](const std::string& other) { return same_value(other, text); }))
-        fail(node, fmt::format("the axis of {} has the value {} twice", axis.key, one_line(text)));
-      axis.values.push_back(text);
+      const std::string text = value(axis.name, node).text;
+      if (std::any_of(axis.settings.begin(), axis.settings.end(), [&](const auto& other) { return same_value(other.label, text); }))
+        fail(node, fmt::format("the axis of {} has the value {} twice", axis.name, one_line(text)));
+      axis.settings.push_back({text, {{axis.name, text}}});
     }
     axes_.push_back(std::move(axis));
   }
 
-  std::vector<std::vector<Override>> matrix() const {
+  /// An axis whose settings change several keys.
+  void read_settings(const toml::table& table) {
+    const toml::node *name = table.get("name"), *settings = table.get("settings");
+    if (table.contains("key") || table.contains("values")) fail(table, "an [[axis]] has key and values, or name and settings, not both");
+    const std::string word = name != nullptr && name->is_string() ? name->as_string()->get() : "";
+    if (!is_word(word)) fail(name == nullptr ? table : *name, "an [[axis]] with settings needs name = \"...\", a word of letters, digits, - and _");
+    if (scene::find_key(scene::pattern_of(word)) != nullptr || rank(word) < axes_.size()) fail(*name, fmt::format("{} is a key of the scene or another axis: choose another name", word));
+    if (settings == nullptr || !settings->is_array() || settings->as_array()->empty())
+      fail(settings == nullptr ? table : *settings, fmt::format("the axis {} needs settings = [{{ label = \"...\", set = {{ ... }} }}, ...], a list with at least one setting", word));
+    SweepAxis axis{word, false, {}};
+    for (const toml::node& node : *settings->as_array()) {
+      const toml::table* entry = node.as_table();
+      static constexpr std::array<std::string_view, 2> parts{"label", "set"};
+      if (entry == nullptr) fail(node, fmt::format("a setting of {} must be a table: {{ label = \"...\", set = {{ ... }} }}", word));
+      allow_only(*entry, parts, "a setting");
+      const toml::node *label = entry->get("label"), *set = entry->get("set");
+      const std::string text = label != nullptr && label->is_string() ? label->as_string()->get() : "";
+      if (!is_word(text)) fail(label == nullptr ? node : *label, fmt::format("a setting of {} needs label = \"...\", a word of letters, digits, - and _", word));
+      if (std::any_of(axis.settings.begin(), axis.settings.end(), [&](const auto& other) { return other.label == text; }))
+        fail(*label, fmt::format("{} has the label {} twice", word, text));
+      if (set == nullptr || !set->is_table()) fail(set == nullptr ? node : *set, fmt::format("the setting {} needs set = {{ ... }} with its overrides ({{}} for the base scene)", text));
+      axis.settings.push_back({text, overrides(*set->as_table())});
+      for (const Override& o : axis.settings.back().overrides)
+        if (rank(o.key) < axes_.size()) fail(*set, fmt::format("{} has an axis already", o.key));
+    }
+    axes_.push_back(std::move(axis));
+  }
+  static bool is_word(const std::string& text) {
+    return !text.empty() && text.size() <= 60 && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
+  }
+
+  std::vector<std::vector<Override>> matrix() {
     if (axes_.empty()) return {};
     std::vector<std::vector<Override>> points{{}};
-    for (const Axis& axis : axes_) {
-      if (points.size() * axis.values.size() > most_sweep_points)
+    named_ = points;
+    for (const SweepAxis& axis : axes_) {
+      if (points.size() * axis.settings.size() > most_sweep_points)
         throw InputError(fmt::format("{}: the axes give more than {} points: use fewer values", origin_, most_sweep_points));
-      std::vector<std::vector<Override>> more;
-      for (const auto& point : points)
-        for (const std::string& text : axis.values) {
-          more.push_back(point);
-          more.back().push_back({axis.key, text});
+      std::vector<std::vector<Override>> more, names;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        for (const auto& setting : axis.settings) {
+          more.push_back(points[i]);
+          more.back().insert(more.back().end(), setting.overrides.begin(), setting.overrides.end());
+          names.push_back(named_[i]);
+          names.back().push_back({axis.name, axis.is_key ? setting.label : scene::quote(setting.label)});
         }
       points = std::move(more);
+      named_ = std::move(names);
     }
     return points;
   }
@@ -194,9 +226,14 @@ class SweepReader {
     given_.push_back(overrides(table));
     // In the order of the axes, so that names read alike.
     std::stable_sort(given_.back().begin(), given_.back().end(), [&](const Override& a, const Override& b) { return rank(a.key) < rank(b.key); });
+    named_.push_back(given_.back());
   }
+  /// The axis of a key, or of a name.
   std::size_t rank(const std::string& key) const {
-    return static_cast<std::size_t>(std::find_if(axes_.begin(), axes_.end(), [&](const Axis& axis) { return axis.key == key; }) - axes_.begin());
+    const auto has = [&](const SweepAxis& axis) {
+      return axis.name == key || std::any_of(axis.settings.begin(), axis.settings.end(), [&](const auto& setting) { return find(setting.overrides, key) != nullptr; });
+    };
+    return static_cast<std::size_t>(std::find_if(axes_.begin(), axes_.end(), has) - axes_.begin());
   }
 
   void read_rule(const toml::table& table) {
@@ -256,16 +293,17 @@ class SweepReader {
     }
   }
 
-  std::string origin_, path_;
+  std::string origin_, path_, more_;
   toml::table root_;
-  std::vector<Axis> axes_;
+  std::vector<SweepAxis> axes_;
   std::vector<std::vector<Override>> given_;  ///< by axes and [[also]], of each point
+  std::vector<std::vector<Override>> named_;  ///< the same with the labels of settings, for names
   std::vector<Rule> rules_;
 };
 
 }  // namespace
 
-Sweep parse_sweep(std::string_view text, const std::string& origin) { return SweepReader(text, origin).read(); }
+Sweep parse_sweep(std::string_view text, const std::string& origin, std::string_view more) { return SweepReader(text, origin, more).read(); }
 
 Sweep read_sweep(const std::string& path) { return parse_sweep(scene::read_text(path, "sweep"), path); }
 

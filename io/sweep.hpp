@@ -20,8 +20,20 @@ struct SweepPoint {
   std::vector<Override> overrides;  ///< of axes and [[also]] first, then of [[where]]
 };
 
+/// One axis: a key and its values, or a name and settings that change several keys together.
+struct SweepAxis {
+  struct Setting {
+    std::string label;               ///< of a key: the value
+    std::vector<Override> overrides;
+  };
+  std::string name;  ///< or the key
+  bool is_key = true;
+  std::vector<Setting> settings;
+};
+
 struct Sweep {
   std::string scene;               ///< path of the base scene
+  std::vector<SweepAxis> axes;
   std::vector<SweepPoint> points;  ///< the matrix of the axes, the last one running fastest, then [[also]]
 };
 
@@ -30,8 +42,8 @@ inline constexpr std::size_t most_sweep_points = 10'000;
 
 /// @throws InputError with one sentence: where, what is wrong, what is allowed. The scenes themselves are not looked at.
 Sweep read_sweep(const std::string& path);
-/// The same for a sweep in memory; `origin` names it in messages, and the scene is beside it.
-Sweep parse_sweep(std::string_view text, const std::string& origin);
+/// The same for a sweep in memory; `origin` names it in messages, and the scene is beside it. `more`: a table beside those of a sweep that is left to somebody else.
+Sweep parse_sweep(std::string_view text, const std::string& origin, std::string_view more = {});
 
 /// Readable names of points from the values that vary among them: "phi0.45-Ca0.0028". `given` has the overrides of each point.
 /// Keys appear in the order in which they come first; "base" where nothing varies. Names can coincide, for example when two strings differ in a blank only.

@@ -20,12 +20,6 @@ constexpr std::array run_numbers{"capillary_number", "phi_effective", "phi_geome
 double number(const Json& value) { return value.is_number() ? value.get<double>() : statistics::not_a_number; }
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-statistics::Estimate estimate_of(const Json& analysis, const char* name) {
-  const Json& from = analysis.at("estimates").at(name);
-  return {.value = number(from.at("value")), .error = number(from.at("error")), .correlation_time = number(from.at("correlation_time")),
-          .effective_samples = number(from.at("effective_samples")), .converged = from.at("converged").get<bool>(), .reason = from.at("reason").get<std::string>()};
-}
-
 analysis::RunOutcome outcome_of(const AnalysedRun& run) {
   const Json& facts = run.analysis.at("run");
   return {.directory = run.directory,
@@ -104,6 +98,12 @@ Json read_analysis(const std::filesystem::path& path) {
     return json;
   }
   throw InputError(fmt::format("{} is no result of corpuscle analyse", path.string()));
+}
+
+statistics::Estimate estimate_of(const Json& analysis, const std::string& name) {
+  const Json& from = analysis.at("estimates").at(name);
+  return {.value = number(from.at("value")), .error = number(from.at("error")), .correlation_time = number(from.at("correlation_time")),
+          .effective_samples = number(from.at("effective_samples")), .converged = from.at("converged").get<bool>(), .reason = from.at("reason").get<std::string>()};
 }
 
 SweepAnalysis combine(std::vector<AnalysedRun> runs, std::vector<std::string> warnings) {

@@ -29,6 +29,9 @@ struct SweepAnalysis {
 /// Reads an analysis.json. @throws InputError when it isn't one.
 nlohmann::ordered_json read_analysis(const std::filesystem::path& path);
 
+/// One estimate of an analysis.json. @throws nlohmann::json::exception when it has none of that name
+statistics::Estimate estimate_of(const nlohmann::ordered_json& analysis, const std::string& name);
+
 /// Fits over all runs.
 SweepAnalysis combine(std::vector<AnalysedRun> runs, std::vector<std::string> warnings);
 

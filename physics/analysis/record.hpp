@@ -62,7 +62,7 @@ struct RunRecord {
   std::string directory;
   FlowOf flow = FlowOf::shear;
   bool walls = true;
-  double capillary_number = 0, phi_geometric = 0, phi_effective = 0;
+  double capillary_number = 0, phi_geometric = 0, phi_nominal = 0, phi_effective = 0;  ///< nominal: of the cells at their nominal size
   double radius = 0, viscosity = 0, shear_rate = 0;
   std::array<double, 3> box{};
   double rate_factor = 1;    ///< `shear_rate` over the one that the walls impose (referred_to)

@@ -50,6 +50,13 @@ void add_rheology(const SteadyState& state, Analysis& analysis) {
     analysis.refuse(Group::walls, state.at_rest());
   } else {
     analysis.estimate("whole_relative_viscosity") = mean(state.steady(record.relative_viscosity));
+    Estimate& intrinsic = analysis.estimate("intrinsic_viscosity");
+    intrinsic.reason = "there are no cells";
+    if (record.phi_nominal > 0) {
+      intrinsic = analysis.estimate("whole_relative_viscosity");
+      intrinsic.value = (intrinsic.value - 1) / record.phi_nominal;
+      intrinsic.error /= record.phi_nominal;
+    }
     Estimate& wall = analysis.estimate("wall_relative_viscosity");
     if (record.flow == FlowOf::shear) wall = mean(state.steady(record.wall_relative_viscosity));
     else wall.reason = "in channel flow the wall stress is given by the body force";

@@ -8,6 +8,7 @@
 #include "physics/statistics/ellipsoid.hpp"
 #include "physics/statistics/mean_error.hpp"
 #include "physics/statistics/orientation.hpp"
+#include "physics/statistics/tumbling.hpp"
 
 namespace corpuscle::analysis {
 namespace {
@@ -54,6 +55,7 @@ void keep_whole_windows(const SteadyState& state, Index length, Ellipsoids& axes
 
 void add_motion(const SteadyState& state, Ellipsoids& axes, Analysis& analysis) {
   if (const std::string rest = state.at_rest(); !rest.empty()) return analysis.refuse(Group::motion, rest);
+  analysis.estimate("tumbling_period") = statistics::tumbling_period({axes.x, axes.y, axes.z}, state.interval);
   const Index intervals = state.times - 1;
   const auto wanted = static_cast<Index>(std::lround(motion_window / state.interval));
   const Index length = std::min(wanted, intervals);

@@ -70,6 +70,7 @@ struct SyntheticRun {
     run.types = {{.name = "red_cell", .count = cells, .effective_radius = 1.05 * radius, .volume = 200, .effective_volume = 250}};
     run.type_of_cell.assign(static_cast<std::size_t>(cells), 0);
     run.phi_geometric = 200 * static_cast<double>(cells) / (box[0] * box[1] * box[2]);
+    run.phi_nominal = run.phi_geometric;
     run.phi_effective = 1.25 * run.phi_geometric;
     memory = std::make_shared<MemoryCells>(times, cells);
     const double unit = shear_rate * radius, steps = interval / shear_rate;

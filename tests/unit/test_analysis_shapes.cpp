@@ -49,6 +49,7 @@ TEST_CASE("analysis: tumbling cells, and those that leave the bulk", "[analysis]
   CHECK(found.estimate("steady_share").value == Approx(0.75));
   CHECK(found.estimate("rolling_share").value == 0);
   CHECK(found.estimate("half_turns").value == Approx(0.5 / std::numbers::pi));
+  CHECK(found.estimate("tumbling_period").value == Approx(4 * std::numbers::pi));
 
   // One tumbler is put outside for some time in every window of 11 strains: none of its windows counts.
   for (Index t = 0; t < run.times; ++t)

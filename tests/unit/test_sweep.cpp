@@ -157,6 +157,47 @@ TEST_CASE("sweep: what is wrong is told with its line", "[sweep]") {
   CHECK(complaint_lacks([&] { parse(many); }, {"more than 10000 points"}) == "");
 }
 
+TEST_CASE("sweep: an axis of settings changes several keys together", "[sweep]") {
+  const std::string size = R"(
+[[axis]]
+name = "size"
+settings = [ { label = "base", set = {} }, { label = "small", set = { "accuracy.radius" = 4, box.size = [4, 4, 4] } } ]
+)";
+  const Sweep sweep = parse(paper + size);
+  REQUIRE(sweep.points.size() == 8);
+  CHECK(names(sweep)[0] == "phi0.12-Ca0.081-size_base");
+  CHECK(names(sweep)[1] == "phi0.12-Ca0.081-size_small");
+  CHECK(texts(sweep.points[0]) == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.081"});
+  CHECK(texts(sweep.points[1]).size() == 4);
+  REQUIRE(sweep.axes.size() == 3);
+  CHECK(sweep.axes[1].is_key);
+  CHECK_FALSE(sweep.axes[2].is_key);
+  CHECK(sweep.axes[2].settings[1].label == "small");
+
+  const std::string begin = "scene = \"s.toml\"\n[[axis]]\n";
+  const std::vector<std::pair<std::string, const char*>> bad{
+      {"name = \"size\"", "needs settings"},
+      {"settings = [ { label = \"a\", set = {} } ]", "needs name"},
+      {"name = \"si/ze\"\nsettings = [ { label = \"a\", set = {} } ]", "a word of letters"},
+      {"name = \"size\"\nkey = \"run.seed\"\nsettings = []", "not both"},
+      {"name = \"run.seed\"\nsettings = [ { label = \"a\", set = {} } ]", "a word of letters"},
+      {"name = \"size\"\nsettings = [ 3 ]", "must be a table"},
+      {"name = \"size\"\nsettings = [ { set = {} } ]", "needs label"},
+      {"name = \"size\"\nsettings = [ { label = \"a\" } ]", "needs set"},
+      {"name = \"size\"\nsettings = [ { label = \"a\", set = {} }, { label = \"a\", set = { \"run.seed\" = 2 } } ]", "the label a twice"},
+      {"name = \"size\"\nsettings = [ { label = \"a\", set = { \"run.sed\" = 2 } } ]", "run.seed"},
+      {"name = \"size\"\nsettings = [ { label = \"a\", set = {} } ]\n[[axis]]\nname = \"size\"\nsettings = [ { label = \"b\", set = {} } ]", "another axis"},
+      {"key = \"run.seed\"\nvalues = [1]\n[[axis]]\nname = \"size\"\nsettings = [ { label = \"b\", set = { \"run.seed\" = 3 } } ]", "run.seed has an axis already"},
+      {"name = \"size\"\nsettings = [ { label = \"b\", set = { \"run.seed\" = 3 } } ]\n[[axis]]\nkey = \"run.seed\"\nvalues = [1]", "run.seed has an axis already"},
+  };
+  for (const auto& [text, words] : bad) {
+    INFO(text);
+    CHECK(complaint_lacks([&, &text = text] { parse(begin + text); }, {words}) == "");
+  }
+  // The table of a study is none of a sweep.
+  CHECK(complaint_lacks([] { parse(paper + "[study]\n"); }, {"study isn't a key of a sweep"}) == "");
+}
+
 TEST_CASE("sweep: files are read as scenes are", "[sweep]") {
   const ScratchFolder folder;
   CHECK(complaint_lacks([&] { read_sweep((folder / "none.toml").string()); }, {"none.toml", "no such sweep file"}) == "");

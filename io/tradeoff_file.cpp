@@ -1,0 +1,197 @@
+// tradeoff.json, .csv and .md.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/version.hpp"
+#include "io/analysis_file.hpp"
+#include "io/tradeoff.hpp"
+
+namespace corpuscle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using statistics::Estimate;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json estimate(const Estimate& e) { return {{"value", number(e.value)}, {"error", number(e.error)}, {"converged", e.converged}, {"reason", e.reason}}; }
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+std::string percent(const Estimate& d) { return std::isnan(d.value) ? "-" : with_error(100 * d.value, 100 * d.error) + " %"; }
+std::string digits(double value, int count = 3) { return std::isfinite(value) ? fmt::format("{:.{}g}", value, count) : "-"; }
+
+Json settings_of(const Study& study, const std::vector<std::string>& settings) {
+  Json json = Json::object();
+  for (std::size_t k = 0; k < study.knobs.size(); ++k)
+    if (!settings[k].empty()) json[study.knobs[k]] = settings[k];
+  return json;
+}
+
+std::string others_text(const Study& study, const std::vector<std::string>& settings) {
+  std::string text;
+  for (std::size_t k = 0; k < study.knobs.size(); ++k)
+    if (!settings[k].empty() && settings[k] != study.base_settings[k]) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", study.knobs[k], settings[k]);
+  return text.empty() ? "as the base scene" : text;
+}
+
+bool on_front(const StudyResult& result, std::size_t i) { return std::find(result.front.begin(), result.front.end(), i) != result.front.end(); }
+
+std::string front_page(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string page = "\n## The front\n\nNo cheaper point is as accurate. The deviation is that of the observable that deviates most.\n\n|";
+  for (const auto& knob : study.knobs) page += fmt::format(" {} |", knob);
+  page += " core s/strain | deviation | of | what limits it |\n|";
+  for (std::size_t k = 0; k < study.knobs.size() + 4; ++k) page += "---|";
+  page += "\n";
+  for (const std::size_t i : result.front) {
+    page += "|";
+    for (const auto& setting : result.points[i].settings) page += fmt::format(" {} |", setting);
+    const auto& d = result.deviations[i];
+    std::string limit = "nothing that was tried, beyond the uncertainty";
+    for (const auto& l : result.limiting)
+      if (l.point == i) limit = fmt::format("{} → {}: {:.1f} % at {} times the cost", study.knobs[l.knob], l.to, 100 * l.error, digits(l.cost_factor));
+    page += fmt::format(" {} | {} | {} | {} |\n", digits(result.points[i].cost), percent(d.of[d.worst]), study.observables[d.worst], limit);
+  }
+  return page;
+}
+
+std::string points_page(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string page = "\n## All points\n\nEach observable with its deviation from the reference. A star marks what is not converged, **bold** what is on the front.\n\n|";
+  for (const auto& knob : study.knobs) page += fmt::format(" {} |", knob);
+  page += " steps/strain | core s/strain | measured |";
+  for (const auto& name : study.observables) page += fmt::format(" {} | deviation |", name);
+  page += "\n|";
+  for (std::size_t k = 0; k < study.knobs.size() + 3 + 2 * study.observables.size(); ++k) page += "---|";
+  page += "\n";
+  for (std::size_t i = 0; i < result.entries.size(); ++i) {
+    const StudyEntry& entry = result.entries[i];
+    const std::string bold = on_front(result, i) ? "**" : "";
+    page += "|";
+    for (const auto& setting : entry.point.settings) page += fmt::format(" {}{}{} |", bold, setting, bold);
+    if (entry.state != "finished") {
+      page += fmt::format(" {} | | |", entry.state);
+      for (std::size_t o = 0; o < study.observables.size(); ++o) page += " - | - |";
+    } else {
+      page += fmt::format(" {:.0f} | {} | {} |", entry.steps_per_strain, digits(entry.point.cost), digits(entry.measured));
+      for (std::size_t o = 0; o < study.observables.size(); ++o) {
+        const Estimate& e = entry.point.observed[o];
+        page += fmt::format(" {}{} | {} |", with_error(e.value, e.error), e.converged || std::isnan(e.value) ? "" : " *", percent(result.deviations[i].of[o]));
+      }
+    }
+    page += "\n";
+  }
+  return page;
+}
+
+std::string knobs_page(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string page;
+  if (!result.steps.empty()) {
+    page += "\n## What each knob buys\n\nMedians over all pairs of points that differ in this step only.\n\n| knob | step | pairs | cost | deviation |\n|---|---|---|---|---|\n";
+    for (const auto& s : result.steps)
+      page += fmt::format("| {} | {} → {} | {} | × {} | × {} |\n", study.knobs[s.knob], s.from, s.to, s.pairs, digits(s.cost_factor), digits(s.error_factor));
+  }
+  if (!result.orders.empty()) {
+    page += "\n## Convergence\n\n|deviation| = prefactor × setting^−order, from the points that deviate by more than their uncertainty.\n\n"
+            "| knob | other settings | observable | points | order |\n|---|---|---|---|---|\n";
+    for (const auto& o : result.orders) {
+      const Estimate exponent = o.fit.parameter("exponent");
+      page += fmt::format("| {} | {} | {} | {} | {}{} |\n", study.knobs[o.knob], others_text(study, o.others), study.observables[o.observable], o.points,
+                          with_error(-exponent.value, exponent.error), o.fit.converged ? "" : fmt::format(" ({})", o.fit.reason));
+    }
+  }
+  return page;
+}
+
+}  // namespace
+
+Json tradeoff_json(const StudyResult& result) {
+  const Study& study = result.study;
+  Json json = {{"format", tradeoff_format}, {"version", version_string()}, {"git_revision", git_revision()}, {"scene", study.sweep.scene}, {"observables", study.observables}};
+  json["knobs"] = study.knobs;
+  json["base"] = settings_of(study, study.base_settings);
+  for (std::size_t o = 0; o < study.observables.size(); ++o) {
+    Json& r = json["reference"][study.observables[o]] = estimate(result.reference.values[o]);
+    r["from"] = result.reference_from[o];
+    if (result.limits.empty()) continue;
+    const auto& limit = result.limits[o];
+    r["from_resolution"] = number(limit.from);
+    r["statistical_error"] = number(limit.statistical_error);
+    r["model_error"] = number(limit.model_error);
+    r["chi2"] = number(limit.chi2);
+    r["degrees_of_freedom"] = limit.degrees_of_freedom;
+    for (std::size_t f = 0; f < result.families.size(); ++f)
+      r["families"].push_back({{"settings", settings_of(study, result.families[f])}, {"first", number(limit.terms[f].first)}, {"second", number(limit.terms[f].second)}});
+  }
+  json["points"] = Json::array();
+  for (std::size_t i = 0; i < result.entries.size(); ++i) {
+    const StudyEntry& entry = result.entries[i];
+    Json point = {{"name", entry.point.name}, {"settings", settings_of(study, entry.point.settings)}, {"state", entry.state}, {"message", entry.message}, {"runs", entry.runs}};
+    point["nodes"] = number(entry.nodes);
+    point["vertices"] = number(entry.vertices);
+    point["steps_per_strain"] = number(entry.steps_per_strain);
+    point["core_seconds_per_strain"] = {{"predicted", number(entry.point.cost)}, {"measured", number(entry.measured)}};
+    for (std::size_t o = 0; o < study.observables.size(); ++o) {
+      Json& observed = point["observed"][study.observables[o]] = estimate(entry.point.observed[o]);
+      const Estimate& d = result.deviations[i].of[o];
+      observed["deviation"] = {{"value", number(d.value)}, {"error", number(d.error)}};
+    }
+    point["deviation"] = {{"value", number(result.deviations[i].size)}, {"error", number(result.deviations[i].uncertainty)}, {"of", study.observables[result.deviations[i].worst]}};
+    point["on_front"] = on_front(result, i);
+    json["points"].push_back(point);
+  }
+  json["front"] = json["limiting_knobs"] = json["knob_steps"] = json["orders"] = Json::array();
+  for (const std::size_t i : result.front) json["front"].push_back(result.points[i].name);
+  for (const auto& l : result.limiting)
+    json["limiting_knobs"].push_back({{"point", result.points[l.point].name}, {"knob", study.knobs[l.knob]}, {"to", l.to}, {"deviation", number(l.error)}, {"cost_factor", number(l.cost_factor)}});
+  for (const auto& s : result.steps)
+    json["knob_steps"].push_back({{"knob", study.knobs[s.knob]}, {"from", s.from}, {"to", s.to}, {"pairs", s.pairs}, {"cost_factor", number(s.cost_factor)}, {"deviation_factor", number(s.error_factor)}});
+  for (const auto& o : result.orders) {
+    const Estimate exponent = o.fit.parameter("exponent");
+    json["orders"].push_back({{"knob", study.knobs[o.knob]}, {"observable", study.observables[o.observable]}, {"others", settings_of(study, o.others)}, {"points", o.points},
+                              {"order", number(-exponent.value)}, {"error", number(exponent.error)}, {"converged", o.fit.converged}});
+  }
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+std::string tradeoff_csv(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string text = "name";
+  for (const auto& knob : study.knobs) text += "," + knob;
+  text += ",state,nodes,vertices,steps_per_strain,core_seconds_per_strain,core_seconds_per_strain_measured";
+  for (const auto& name : study.observables) text += fmt::format(",{0},{0}_error,{0}_deviation,{0}_deviation_error", name);
+  text += ",on_front";
+  const auto quoted = [](const std::string& word) { return word.find(',') == std::string::npos ? word : "\"" + word + "\""; };
+  for (std::size_t i = 0; i < result.entries.size(); ++i) {
+    const StudyEntry& entry = result.entries[i];
+    text += "\n" + entry.point.name;
+    for (const auto& setting : entry.point.settings) text += "," + quoted(setting);
+    text += fmt::format(",{}", entry.state);
+    for (const double value : {entry.nodes, entry.vertices, entry.steps_per_strain, entry.point.cost, entry.measured}) text += "," + cell(value);
+    for (std::size_t o = 0; o < study.observables.size(); ++o) {
+      const Estimate &e = entry.point.observed[o], &d = result.deviations[i].of[o];
+      for (const double value : {e.value, e.error, d.value, d.error}) text += "," + cell(value);
+    }
+    text += on_front(result, i) ? ",1" : ",0";
+  }
+  return text + "\n";
+}
+
+std::string tradeoff_page(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string page = fmt::format("# Error against cost\n\nBase scene: {}. Cost: core seconds a unit of strain, predicted for this machine with one thread from counted work; \"measured\": what the runs took.\n\n"
+                                 "| observable | reference | from |\n|---|---|---|\n", study.sweep.scene.substr(study.sweep.scene.rfind('/') + 1));
+  for (std::size_t o = 0; o < study.observables.size(); ++o) {
+    const Estimate& r = result.reference.values[o];
+    page += fmt::format("| {} | {}{} | {} |\n", study.observables[o], with_error(r.value, r.error), r.converged || std::isnan(r.value) ? "" : " *", result.reference_from[o]);
+  }
+  page += front_page(result);
+  page += knobs_page(result);
+  page += points_page(result);
+  return page + warnings_page(result.warnings);
+}
+
+}  // namespace corpuscle
