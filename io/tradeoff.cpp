@@ -39,10 +39,9 @@ void extrapolate(StudyResult& result) {
   }
   for (std::size_t o = 0; o < study.observables.size(); ++o) {
     result.limits.push_back(statistics::common_limit(values[o]));
-    result.limits.back().terms.resize(result.families.size());
+    result.limits.back().families.resize(result.families.size());
     result.reference.values.push_back(result.limits.back().limit);
-    result.reference_from.push_back(fmt::format("limit of {} families of settings for {} → infinity, from {:g} on", result.families.size(), study.reference.extrapolate,
-                                                result.limits.back().from));
+    result.reference_from.push_back(fmt::format("limit of {} families of settings for {} → infinity", static_cast<int>(result.limits.back().limit.effective_samples), study.reference.extrapolate));
   }
 }
 

@@ -56,6 +56,22 @@ std::string front_page(const StudyResult& result) {
   return page;
 }
 
+/// The extrapolations that the reference is the mean of.
+std::string families_page(const StudyResult& result) {
+  if (result.limits.empty()) return "";
+  const Study& study = result.study;
+  std::string page = fmt::format("\n## Extrapolation\n\nvalue = limit + a/{0} + b/{0}², by family; the error has the statistical part and the change of the limit without the coarsest resolution.\n\n|", study.reference.extrapolate);
+  page += " settings | observable | from | limit | a | b |\n|---|---|---|---|---|---|\n";
+  for (std::size_t o = 0; o < result.limits.size(); ++o)
+    for (std::size_t f = 0; f < result.families.size(); ++f) {
+      const auto& family = result.limits[o].families[f];
+      if (std::isnan(family.limit.value)) continue;
+      page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", others_text(study, result.families[f]), study.observables[o], digits(family.from), with_error(family.limit.value, family.limit.error),
+                          digits(family.first), digits(family.second));
+    }
+  return page;
+}
+
 std::string points_page(const StudyResult& result) {
   const Study& study = result.study;
   std::string page = "\n## All points\n\nEach observable with its deviation from the reference. A star marks what is not converged, **bold** what is on the front.\n\n|";
@@ -117,13 +133,13 @@ Json tradeoff_json(const StudyResult& result) {
     r["from"] = result.reference_from[o];
     if (result.limits.empty()) continue;
     const auto& limit = result.limits[o];
-    r["from_resolution"] = number(limit.from);
-    r["statistical_error"] = number(limit.statistical_error);
-    r["model_error"] = number(limit.model_error);
     r["chi2"] = number(limit.chi2);
     r["degrees_of_freedom"] = limit.degrees_of_freedom;
-    for (std::size_t f = 0; f < result.families.size(); ++f)
-      r["families"].push_back({{"settings", settings_of(study, result.families[f])}, {"first", number(limit.terms[f].first)}, {"second", number(limit.terms[f].second)}});
+    for (std::size_t f = 0; f < result.families.size(); ++f) {
+      const auto& family = limit.families[f];
+      r["families"].push_back({{"settings", settings_of(study, result.families[f])}, {"limit", number(family.limit.value)}, {"error", number(family.limit.error)}, {"from_resolution", number(family.from)},
+                               {"first", number(family.first)}, {"second", number(family.second)}, {"statistical_error", number(family.statistical_error)}, {"model_error", number(family.model_error)}});
+    }
   }
   json["points"] = Json::array();
   for (std::size_t i = 0; i < result.entries.size(); ++i) {
@@ -190,6 +206,7 @@ std::string tradeoff_page(const StudyResult& result) {
   }
   page += front_page(result);
   page += knobs_page(result);
+  page += families_page(result);
   page += points_page(result);
   return page + warnings_page(result.warnings);
 }

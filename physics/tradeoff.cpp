@@ -90,16 +90,19 @@ Deviation deviation(const Point& point, const Reference& reference) {
     if (!(r.value != 0)) d = {.reason = "the reference is not known"};
     result.of.push_back(d);
   }
+  const auto certain = [&](const Estimate& r) { return r.converged; };
+  const bool any = std::any_of(reference.values.begin(), reference.values.end(), certain);
   for (std::size_t i = 0; i < result.of.size(); ++i) {
+    if (any && !certain(reference.values[i])) continue;
     const double size = std::abs(result.of[i].value);
     if (std::isnan(size)) {
       result.size = result.uncertainty = not_a_number;
       return result;
     }
-    if (i > 0 && size <= result.size) continue;
+    if (!std::isnan(result.size) && size <= result.size) continue;
     result.worst = i;
     result.size = size;
-    result.uncertainty = result.of[i].error;
+    result.uncertainty = std::abs(result.of[i].error);
   }
   return result;
 }

@@ -25,7 +25,7 @@ struct Reference {
 /// Deviations of a point: value/reference - 1 of each observable, the error being that of point and reference together.
 struct Deviation {
   std::vector<statistics::Estimate> of;
-  std::size_t worst = 0;     ///< the observable that deviates most
+  std::size_t worst = 0;     ///< the observable that deviates most, of those with a reference that is certain where there are any
   double size = statistics::not_a_number;         ///< |deviation| of that one; NaN when an observable is missing
   double uncertainty = statistics::not_a_number;
 };

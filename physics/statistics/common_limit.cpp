@@ -5,57 +5,36 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
-#include <map>
 #include <set>
 
 namespace corpuscle::statistics {
 namespace {
 
-constexpr double least_relative_error = 1e-3;
-constexpr std::size_t resolutions_for_two_terms = 4;
-constexpr double largest_misfit = 2;  // chi2 per degree of freedom
+constexpr double described = 0.01;          // of a family's range that two terms miss
+constexpr double least_relative_error = 1e-6;
+constexpr double largest_misfit = 2;        // chi2 per degree of freedom of a family's fit
+constexpr double contradiction = 4;         // the same of the families about their mean
+constexpr double uncertain = 0.05;          // of the limit
 
-struct LinearFit {
-  double limit = not_a_number, error = not_a_number, chi2 = not_a_number;
-  int degrees_of_freedom = 0;
-  std::map<int, CommonLimit::Terms> terms;
+struct SeriesFit {
+  double limit = not_a_number, first = 0, second = 0, error = not_a_number, chi2 = not_a_number;
+  int points = 0, terms = 0;
+  int degrees_of_freedom() const { return points - 1 - terms; }
+  double criterion() const { return chi2 + 2.0 * (1 + terms); }
+  double misfit() const { return degrees_of_freedom() > 0 ? chi2 / degrees_of_freedom() : 0; }
 };
 
-std::map<int, std::set<double>> resolutions_of(const std::vector<ResolvedValue>& values) {
-  std::map<int, std::set<double>> result;
-  for (const auto& v : values) result[v.family].insert(v.resolution);
-  return result;
-}
-
-/// Families with one resolution say nothing about the limit.
-std::vector<ResolvedValue> usable(const std::vector<ResolvedValue>& values) {
-  std::vector<ResolvedValue> result;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(result),
-               [](const ResolvedValue& v) { return v.resolution > 0 && std::isfinite(v.resolution) && std::isfinite(v.value) && std::isfinite(v.error); });
-  const auto resolutions = resolutions_of(result);
-  std::erase_if(result, [&](const ResolvedValue& v) { return resolutions.at(v.family).size() < 2; });
-  return result;
-}
-
-LinearFit fit(const std::vector<ResolvedValue>& values, const std::map<int, std::size_t>& terms_of) {
-  LinearFit result;
-  Eigen::Index columns = 1;
-  std::map<int, Eigen::Index> first_column;
-  for (const auto& [family, terms] : terms_of) {
-    first_column[family] = columns;
-    columns += static_cast<Eigen::Index>(terms);
-  }
+SeriesFit fit(const std::vector<ResolvedValue>& values, int terms) {
+  SeriesFit result;
   const auto rows = static_cast<Eigen::Index>(values.size());
+  const Eigen::Index columns = 1 + terms;
   if (rows < columns) return result;
-  Eigen::MatrixXd design = Eigen::MatrixXd::Zero(rows, columns);
+  Eigen::MatrixXd design(rows, columns);
   Eigen::VectorXd target(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const auto& v = values[static_cast<std::size_t>(i)];
-    const double weight = 1 / std::max({v.error, least_relative_error * std::abs(v.value), 1e-300});
-    design(i, 0) = weight;
-    for (std::size_t k = 0; k < terms_of.at(v.family); ++k) design(i, first_column[v.family] + static_cast<Eigen::Index>(k)) = weight / std::pow(v.resolution, double(k + 1));
+    const double weight = 1 / v.error;
+    for (Eigen::Index k = 0; k < columns; ++k) design(i, k) = weight / std::pow(v.resolution, double(k));
     target(i) = weight * v.value;
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(design);
@@ -63,74 +42,96 @@ LinearFit fit(const std::vector<ResolvedValue>& values, const std::map<int, std:
   const Eigen::VectorXd solution = qr.solve(target);
   const Eigen::MatrixXd covariance = (design.transpose() * design).ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
   result.limit = solution(0);
+  result.first = terms > 0 ? solution(1) : 0;
+  result.second = terms > 1 ? solution(2) : 0;
+  result.points = static_cast<int>(rows);
+  result.terms = terms;
   result.chi2 = (design * solution - target).squaredNorm();
-  result.degrees_of_freedom = static_cast<int>(rows - columns);
-  const double scatter = result.degrees_of_freedom > 0 ? std::max(1.0, result.chi2 / result.degrees_of_freedom) : 1;
-  result.error = std::sqrt(covariance(0, 0) * scatter);
-  for (const auto& [family, terms] : terms_of) {
-    const Eigen::Index c = first_column[family];
-    result.terms[family] = {solution(c), terms > 1 ? solution(c + 1) : 0};
-  }
+  result.error = std::sqrt(covariance(0, 0) * std::max(1.0, result.misfit()));
   return result;
 }
 
-std::map<int, std::size_t> terms_for(const std::vector<ResolvedValue>& values) {
-  std::map<int, std::size_t> terms;
-  for (const auto& [family, resolutions] : resolutions_of(values)) terms[family] = resolutions.size() >= resolutions_for_two_terms ? 2 : 1;
-  return terms;
+std::size_t resolutions_of(const std::vector<ResolvedValue>& values) {
+  std::set<double> all;
+  for (const auto& v : values) all.insert(v.resolution);
+  return all.size();
+}
+
+/// One term or two. With fewer than four resolutions two would leave nothing to check them with.
+SeriesFit best_fit(const std::vector<ResolvedValue>& values) {
+  const SeriesFit one = fit(values, 1);
+  if (resolutions_of(values) < 4) return one;
+  const SeriesFit two = fit(values, 2);
+  return one.criterion() <= two.criterion() ? one : two;
+}
+
+std::vector<ResolvedValue> without_coarsest(std::vector<ResolvedValue> values) {
+  double coarsest = values.front().resolution;
+  for (const auto& v : values) coarsest = std::min(coarsest, v.resolution);
+  std::erase_if(values, [&](const ResolvedValue& v) { return v.resolution == coarsest; });
+  return values;
+}
+
+FamilyLimit limit_of(std::vector<ResolvedValue> values) {
+  FamilyLimit result;
+  result.limit.reason = "fewer than three resolutions were measured";
+  if (resolutions_of(values) < 3) return result;
+  double low = values.front().value, high = low;
+  for (const auto& v : values) low = std::min(low, v.value), high = std::max(high, v.value);
+  for (auto& v : values) v.error = std::max({v.error, described * (high - low), least_relative_error * std::abs(v.value), 1e-300});
+  SeriesFit found = best_fit(values);
+  while (found.misfit() > largest_misfit && resolutions_of(values) > 3) {
+    values = without_coarsest(values);
+    found = best_fit(values);
+  }
+  if (std::isnan(found.limit)) return result;
+  const SeriesFit finer = fit(without_coarsest(values), resolutions_of(values) > 4 ? found.terms : 1);
+  double from = values.front().resolution;
+  for (const auto& v : values) from = std::min(from, v.resolution);
+  result = {{.value = found.limit, .effective_samples = double(found.points), .converged = true}, from, found.first, found.second, found.error, std::abs(finer.limit - found.limit)};
+  result.limit.error = std::hypot(result.statistical_error, std::isnan(result.model_error) ? 0 : result.model_error);
+  return result;
 }
 
 }  // namespace
 
-CommonLimit common_limit(const std::vector<ResolvedValue>& all) {
+CommonLimit common_limit(const std::vector<ResolvedValue>& values) {
   CommonLimit result;
   int families = 0;
-  for (const auto& v : all) families = std::max(families, v.family + 1);
-  result.terms.resize(static_cast<std::size_t>(families));
-  std::set<double> resolutions;
-  for (const auto& v : usable(all)) resolutions.insert(v.resolution);
-  if (resolutions.empty()) {
-    result.limit.reason = "no settings were measured at two resolutions";
+  for (const auto& v : values) families = std::max(families, v.family + 1);
+  double weights = 0, sum = 0;
+  int used = 0;
+  for (int f = 0; f < families; ++f) {
+    std::vector<ResolvedValue> own;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(own), [&](const ResolvedValue& v) {
+      return v.family == f && v.resolution > 0 && std::isfinite(v.resolution) && std::isfinite(v.value) && std::isfinite(v.error);
+    });
+    result.families.push_back(limit_of(own));
+    const Estimate& limit = result.families.back().limit;
+    if (!(limit.error > 0)) {
+      if (limit.converged) result.families.back().limit.error = least_relative_error * std::abs(limit.value);
+      else continue;
+    }
+    const double weight = 1 / (limit.error * limit.error);
+    weights += weight;
+    sum += weight * limit.value;
+    ++used;
+  }
+  if (used == 0) {
+    result.limit.reason = "no settings were measured at three resolutions";
     return result;
   }
-  // Coarse resolutions are left out until the model holds; else the range where it holds best is taken.
-  struct Range {
-    double from = 0;
-    LinearFit fit;
-  };
-  std::vector<Range> ranges;
-  for (const double from : resolutions) {
-    std::vector<ResolvedValue> values = all;
-    std::erase_if(values, [&](const ResolvedValue& v) { return v.resolution < from; });
-    values = usable(values);
-    if (values.empty()) break;
-    LinearFit found = fit(values, terms_for(values));
-    if (!std::isnan(found.limit)) ranges.push_back({from, std::move(found)});
-  }
-  if (ranges.empty()) {
-    result.limit.reason = "the resolutions do not determine the limit";
-    return result;
-  }
-  const auto misfit = [](const Range& range) { return range.fit.degrees_of_freedom > 0 ? range.fit.chi2 / range.fit.degrees_of_freedom : std::numeric_limits<double>::infinity(); };
-  auto chosen = std::find_if(ranges.begin(), ranges.end(), [&](const Range& range) { return misfit(range) <= largest_misfit; });
-  const bool holds = chosen != ranges.end();
-  if (!holds) chosen = std::min_element(ranges.begin(), ranges.end(), [&](const Range& a, const Range& b) { return misfit(a) < misfit(b); });
-
-  result.from = chosen->from;
-  result.statistical_error = chosen->fit.error;
-  result.chi2 = chosen->fit.chi2;
-  result.degrees_of_freedom = chosen->fit.degrees_of_freedom;
-  for (const auto& [family, t] : chosen->fit.terms) result.terms[static_cast<std::size_t>(family)] = t;
-  result.limit.value = chosen->fit.limit;
-  result.limit.effective_samples = static_cast<double>(std::count_if(all.begin(), all.end(), [&](const ResolvedValue& v) { return v.resolution >= result.from; }));
-  result.limit.converged = true;
-  if (std::next(chosen) != ranges.end()) result.model_error = std::abs(std::next(chosen)->fit.limit - chosen->fit.limit);
-  result.limit.error = std::hypot(result.statistical_error, std::isnan(result.model_error) ? 0 : result.model_error);
-  if (!holds) doubt(result.limit, fmt::format("the points scatter more about the extrapolation than their errors allow (chi2 = {:.3g} for {} degrees of freedom): finer resolutions, or more "
-                                              "terms, are needed", result.chi2, result.degrees_of_freedom));
-  if (std::isnan(result.model_error)) doubt(result.limit, "no finer resolutions are left that could confirm the extrapolation");
-  if (result.model_error > 0.05 * std::abs(result.limit.value))
-    doubt(result.limit, fmt::format("without the coarsest resolution the limit is {:.2g} away: finer ones are needed", result.model_error));
+  result.limit = {.value = sum / weights, .error = 1 / std::sqrt(weights), .effective_samples = double(used), .converged = true};
+  result.chi2 = 0;
+  for (const FamilyLimit& family : result.families)
+    if (family.limit.error > 0) result.chi2 += std::pow((family.limit.value - result.limit.value) / family.limit.error, 2);
+  result.degrees_of_freedom = used - 1;
+  const double scatter = used > 1 ? result.chi2 / (used - 1) : 0;
+  result.limit.error *= std::sqrt(std::max(1.0, scatter));
+  if (scatter > contradiction)
+    doubt(result.limit, fmt::format("the families contradict each other (chi2 = {:.3g} for {} degrees of freedom): finer resolutions are needed", result.chi2, result.degrees_of_freedom));
+  if (result.limit.error > uncertain * std::abs(result.limit.value))
+    doubt(result.limit, fmt::format("its error is {:.1f} %: finer resolutions, or more or longer runs, are needed", 100 * result.limit.error / std::abs(result.limit.value)));
   return result;
 }
 

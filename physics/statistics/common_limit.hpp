@@ -1,4 +1,4 @@
-// The limit of infinite resolution that several series of measurements share: Richardson's extrapolation by least squares.
+// The limit of infinite resolution that several series of measurements share: Richardson's extrapolation of each, and their weighted mean.
 #pragma once
 #include <vector>
 
@@ -13,24 +13,28 @@ struct ResolvedValue {
   double value = 0, error = 0;
 };
 
-struct CommonLimit {
-  Estimate limit;             ///< its error has both parts below
-  double from = not_a_number;               ///< the coarsest resolution that was used
+/// value = limit + first/resolution + second/resolution^2, from the resolution `from` on.
+struct FamilyLimit {
+  Estimate limit;                     ///< its error has both parts below
+  double from = not_a_number;
+  double first = not_a_number, second = not_a_number;  ///< second is 0 where one term is enough
   double statistical_error = not_a_number;
-  double model_error = not_a_number;  ///< change of the limit without that resolution; NaN where nothing finer determines it
-  double chi2 = not_a_number;
-  int degrees_of_freedom = 0;
-  /// Of each family value = limit + first/resolution + second/resolution^2. NaN for one that took no part.
-  struct Terms {
-    double first = not_a_number, second = not_a_number;
-  };
-  std::vector<Terms> terms;
+  double model_error = not_a_number;  ///< change of the limit without the coarsest resolution
 };
 
-/// Least squares with one limit for all families and one term (two where a family has four or more resolutions) for each (Richardson 1911; Roache, J. Fluids Eng. 116,
-/// 1994). Points count with their errors, and with a thousandth of their value where that is more: the model is no better. Coarse resolutions, for which the series in 1/resolution
-/// doesn't hold, are left out one by one until chi2 is below two per degree of freedom. Where it never is, the statistical error grows with it and the limit isn't converged; nor is
-/// it when it can't be confirmed without the coarsest resolution, or changes by more than 5 % then. Points that are not finite, and families with one resolution, are left out.
+struct CommonLimit {
+  Estimate limit;
+  double chi2 = not_a_number;         ///< of the families about their mean
+  int degrees_of_freedom = 0;
+  std::vector<FamilyLimit> families;
+};
+
+/// Least squares for each family with one or two terms in 1/resolution, whichever Akaike's criterion prefers; coarse resolutions, for which the series
+/// doesn't hold, are left out one by one until chi2 is below two per degree of freedom (Richardson 1911; Roache, J. Fluids Eng. 116, 1994). The error of a family's limit is the statistical one and
+/// the change of the limit when the coarsest resolution is left out, together; so families far from their limit say little. Points count with their errors, and with a hundredth of
+/// the family's range where that is more. The limit is the mean of the families, weighted with their errors; its error grows where they scatter more than those allow.
+/// A family takes part with three or more resolutions; points that are not finite are left out. Not converged: no family can be checked, they contradict each other (chi2 above four per degree of
+/// freedom), or the error is beyond 5 %.
 CommonLimit common_limit(const std::vector<ResolvedValue>& values);
 
 }  // namespace corpuscle::statistics
