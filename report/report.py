@@ -15,6 +15,7 @@ import traceback
 import figures_dynamics
 import figures_rheology
 import figures_run
+import figures_study
 import figures_velocity
 from analysis_data import BadAnalysis, Run, load, read_json
 from page import Entry, estimates_table, fits_table, run_facts, runs_table, warnings_list, write_page
@@ -198,7 +199,7 @@ def report_sweep(sweep, report, arguments):
 
 def arguments_of(argv):
     parser = argparse.ArgumentParser(prog="report", description="Writes DIR/report/index.html with all figures of a run or of a sweep.")
-    parser.add_argument("folder", metavar="DIR", help="output folder of `corpuscle run` or `corpuscle sweep`")
+    parser.add_argument("folder", metavar="DIR", help="output folder of `corpuscle run`, `corpuscle sweep` or `corpuscle tradeoff`")
     parser.add_argument("--run", action="append", default=[], metavar="NAME", help="run of a sweep to show in detail, or `all`; may be repeated (default: the densest)")
     parser.add_argument("--frames", type=int, default=24, metavar="N", help="most pictures of the animation; 0: none (default: 24)")
     parser.add_argument("--no-pictures", action="store_true", help="render no cells (which takes some seconds for each picture)")
@@ -210,8 +211,26 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
+def write_study(folder, arguments):
+    """The page of a study of error against cost: its own results are all that it needs."""
+    if arguments.check:
+        return 0
+    study = figures_study.Study(folder)
+    output = folder / "report"
+    output.mkdir(exist_ok=True)
+    report = Report(output, not arguments.no_pdf)
+    use_style(arguments.dpi)
+    figures = [report.draw(name, title, lambda tally, f=function: f(study, tally), name) for name, title, function in figures_study.FIGURES]
+    subtitle = f"study of {len(study.points)} settings, corpuscle {study.version} ({study.git_revision}). All numbers: tradeoff.md, tradeoff.csv."
+    write_page(output / "index.html", folder.resolve().name, subtitle, [("Error against cost", figures), ("Warnings", [warnings_list(study.warnings)])])
+    print(output / "index.html")
+    return 1 if report.failures else 0
+
+
 def write_report(arguments):
     folder = pathlib.Path(arguments.folder)
+    if (folder / "tradeoff.json").exists():
+        return write_study(folder, arguments)
     check_folder(folder)
     reason = "" if arguments.no_analyse else why_analyse(folder)
     if arguments.check:

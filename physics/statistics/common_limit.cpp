@@ -13,6 +13,7 @@ namespace {
 constexpr double described = 0.01;          // of a family's range that two terms miss
 constexpr double least_relative_error = 1e-6;
 constexpr double largest_misfit = 2;        // chi2 per degree of freedom of a family's fit
+constexpr double beyond = 0.2;              // of the way from the finest value to the limit that an extrapolation is uncertain by: Roache's safety factor of 1.25 is that much above 1
 constexpr double contradiction = 4;         // the same of the families about their mean
 constexpr double uncertain = 0.05;          // of the limit
 
@@ -89,7 +90,10 @@ FamilyLimit limit_of(std::vector<ResolvedValue> values) {
   double from = values.front().resolution;
   for (const auto& v : values) from = std::min(from, v.resolution);
   result = {{.value = found.limit, .effective_samples = double(found.points), .converged = true}, from, found.first, found.second, found.error, std::abs(finer.limit - found.limit)};
-  result.limit.error = std::hypot(result.statistical_error, std::isnan(result.model_error) ? 0 : result.model_error);
+  const auto finest = std::max_element(values.begin(), values.end(), [](const ResolvedValue& a, const ResolvedValue& b) { return a.resolution < b.resolution; });
+  const double r = finest->resolution, way = std::abs(found.first / r + found.second / (r * r));
+  result.model_error = std::hypot(std::isnan(result.model_error) ? 0 : result.model_error, beyond * way);
+  result.limit.error = std::hypot(result.statistical_error, result.model_error);
   return result;
 }
 

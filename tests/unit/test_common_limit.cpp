@@ -31,7 +31,7 @@ TEST_CASE("common limit: an exact series", "[statistics]") {
   CHECK(found.families[1].from == 3);
   CHECK(found.families[1].first == Approx(1.5).epsilon(1e-8));
   CHECK(found.families[2].second == Approx(2).epsilon(1e-8));
-  CHECK(found.families[1].model_error < 1e-10);
+  CHECK(found.families[1].model_error == Approx(0.2 * std::abs(1.5 / 10 - 1.0 / 100)));  // nothing changes without the coarsest
 }
 
 TEST_CASE("common limit: coarse resolutions outside of the series are left out", "[statistics]") {
@@ -61,7 +61,7 @@ TEST_CASE("common limit: errors cover the truth", "[statistics]") {
   }
   // At least the 68 % of a normal distribution: the model's part makes the error larger where only noise makes the limit change.
   CHECK(inside > 0.60 * repeats);  // 68 % and three times its error of 2.7 %
-  CHECK(inside < 0.95 * repeats);
+  CHECK(inside < 0.99 * repeats);
 }
 
 TEST_CASE("common limit: what can't be extrapolated", "[statistics]") {
