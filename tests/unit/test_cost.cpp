@@ -94,8 +94,8 @@ TEST_CASE("A capsule with the least physics launches each operator once, and eac
   const std::string euler = "vertex_update = 'euler'\nallow_unstable = true";
   const auto membrane = [&](const std::string& moduli) { return extra(kernels_of(capsule(euler, moduli)), base); };
   CHECK(membrane("bending = 0.01, global_area = 0, volume = 0") == Counts{{"membrane_forces", -1}, {"membrane_forces, bending", 1}});
-  CHECK(membrane("bending = 0, global_area = 1, volume = 0") == Counts{{"membrane_forces", -1}, {"membrane_forces, global", 1}});
-  CHECK(membrane("bending = 0.01, global_area = 0, volume = 1") == Counts{{"membrane_forces", -1}, {"membrane_forces, bending, global", 1}});
+  CHECK(membrane("bending = 0, global_area = 1, volume = 0") == Counts{{"membrane_forces", -1}, {"membrane_forces, area", 1}});
+  CHECK(membrane("bending = 0.01, global_area = 0, volume = 1") == Counts{{"membrane_forces", -1}, {"membrane_forces, bending, volume", 1}});
   CHECK(extra(kernels_of(capsule("vertex_update = 'averaged'")), base) == Counts{});
   const std::string none = "bending = 0, global_area = 0, volume = 0";
   CHECK(extra(kernels_of(capsule(euler, none, "stretch = { force = 0.1, patch_diameter = 0.8 }")), base) == Counts{{"stretching_forces", 1}});
