@@ -148,7 +148,6 @@ TEST_CASE("Bytes of a scene are those of its models", "[cost]") {
     CHECK(take_all({"mobility"}) == (c.vectors_of_the_past == 6 ? (4 + 4 * 6) * V : 0));
     CHECK(take_all({"positions", "velocities", "forces"}) == 3 * 24 * V);
     CHECK(take_all({"force", "velocity"}) == 2 * 4 * c.reals * nodes);
-    CHECK(take("cell_of_vertex") == 4 * V);
     const std::int64_t E = std::string(c.name).rfind("bending", 0) == 0 ? 3 * V - 6 : 0;
     CHECK(take_all({"membrane"}) == 5 * membrane_real * F + (16 + 2 * membrane_real) * E);
     CHECK(take("faces") == 2 * 12 * F);  // of the membrane and of the sampler
