@@ -129,8 +129,9 @@ def study(folder, key, without):
     sweep = json.loads((folder / "sweep.json").read_text())
     runs, stopped = {}, {}
     for entry in sweep["runs"]:
-        settings = dict(entry["overrides"])
-        model, seed = settings.pop(key) != without, settings.pop(SEED, 1)
+        given = entry["overrides"]
+        settings = {name: given[name] for name in NAMES if name in given}
+        model, seed = given[key] != without, given.get(SEED, 1)
         place = (tuple(sorted(settings.items())), seed, model)
         if entry["state"] != "finished":
             stopped[place] = entry.get("message") or entry["state"]

@@ -202,7 +202,7 @@ def models(result):
             kernels(r),
             f"{digits(r['bytes'])} a {r['bytes_per']}" if r["bytes"] else "0",
             cost(r),
-            f"{100 * (r['time_ratio'] - 1) / r['every']:+.2f}" if r["every"] > 1 else "as before",
+            f"{100 * (r['time_ratio'] - 1) / r['every']:+.2f}" if r["every"] > 1 else "the same",
         ]
         for r in rows_of(result, "models")
     ]
