@@ -15,14 +15,14 @@ struct DispensableModel {
   double viscosity_change = 0;     ///< of relative viscosity - 1, in parts of it: at most, two standard errors included
   double deformation_change = 0;   ///< of the mean deformation D, likewise
   double saved = 0;                ///< about this share of the time of a step
-  std::string measured;            ///< the pairs of runs that surround the scene: "red_cell, phi_eff = 0.1 to 0.2, Ca = 0.01 to 0.08"
+  std::string measured;            ///< the pairs of runs that surround the scene: "red cells, phi_eff = 0.1 to 0.2, Ca = 0.01 to 0.08, r = 5 and 8"
 };
 
 /// What counts as no matter.
 inline constexpr double negligible_viscosity_change = 0.02, negligible_deformation_change = 0.01;
 
-/// Only for scenes inside of what was measured: sheared between walls, one type of red cells or spheres with the default membrane, kernel and contact force, r = 5 to 8, and phi_eff and Ca
-/// between pairs of runs that all had no effect worth more than the above.
+/// Only for scenes inside of what was measured: sheared between walls, one type of red cells or spheres with the default membrane, kernel and contact force; resolution, phi_eff and Ca between
+/// those of pairs of runs that all had no effect worth more than the above.
 /// @param vertex_share of the time of a step that vertices take (membranes, contacts, coupling), the rest being the fluid's
 std::vector<DispensableModel> dispensable_models(const Problem& problem, const LatticeParameters& lattice, double vertex_share);
 

@@ -13,9 +13,9 @@ namespace {
 
 using Change = std::function<void(Problem&)>;
 
-/// Red cells or spheres at a fraction and a Ca between those of the studies, else with defaults, r = 6; changed.
+/// Red cells (r = 6) or spheres (r = 5) at a fraction and a Ca between those of the studies, else with defaults; changed.
 std::vector<DispensableModel> found(double phi_effective, double ca, const std::string& shape = "red_cell", const Change& change = [](Problem&) {}, double vertex_share = 0.5) {
-  Problem problem = parse_scene("[box]\nsize = [10, 10, 10]\n[flow]\ncapillary_number = " + std::to_string(ca) + "\nreynolds_number_max = 0.2\n[accuracy]\nradius = 6\n[run]\nstrain = 1\n" +
+  Problem problem = parse_scene("[box]\nsize = [10, 10, 10]\n[flow]\ncapillary_number = " + std::to_string(ca) + "\nreynolds_number_max = 0.2\n[accuracy]\nradius = " + (shape == "sphere" ? "5" : "6") + "\n[run]\nstrain = 1\n" +
                                     "[[cells]]\nshape = '" + shape + "'\neffective_volume_fraction = " + std::to_string(phi_effective) + "\n",
                                 "test.toml");
   change(problem);
@@ -64,6 +64,7 @@ TEST_CASE("Models that matter are needed, and so are those of which nothing was 
   CHECK(!names(found(0.08, 0.03, "sphere"), contact));
   CHECK(!names(found(0.08, 0.05), bending));      // a red cell's tumbling depends on it
   CHECK(!names(found(0.6, 0.05), single));
+  CHECK(!names(found(0.1, 0.1, "sphere", [](Problem& p) { p.accuracy.radius = 6; }), bending));  // spheres were measured at r = 5 only
 }
 
 TEST_CASE("A scene that differs from those that were measured hears nothing", "[model_effects]") {
