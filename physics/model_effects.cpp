@@ -33,7 +33,7 @@ bool has_double_membrane(const Problem& problem, const CellSpec&) { return probl
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> table{
-      {"contact", "contact.enabled=false", ShapeKind::red_cell, has_contact, 0.097,
+      {"contact", "contact.enabled=false", ShapeKind::red_cell, has_contact, 0.1,
        {{5, 0.016, 0.01, 0.001, 0.0005},
         {5, 0.016, 0.08, 0.001, 0.0005},
         {5, 0.1, 0.01, 0.001, 0.0005},
@@ -61,7 +61,7 @@ const std::vector<Study>& studies() {
         {5, 0.3, 0.01, 0.02, 0.0024},
         {5, 0.3, 0.1, 0.0056, 0.0016},
         {5, 0.3, 1, 0.013, 0.0018}}},
-      {"membrane forces in double precision", "accuracy.membrane_precision=single", ShapeKind::red_cell, has_double_membrane, 0.083,
+      {"membrane forces in double precision", "accuracy.membrane_precision=single", ShapeKind::red_cell, has_double_membrane, 0.09,
        {{5, 0.1, 0.01, 0.001, 0.0005},
         {5, 0.1, 0.08, 0.001, 0.0005},
         {5, 0.3, 0.01, 0.001, 0.0005},
