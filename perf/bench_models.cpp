@@ -20,6 +20,8 @@ using namespace corpuscle::perf;
 
 namespace {
 
+using Call = std::function<void()>;
+
 struct Running {
   Problem problem;
   LatticeParameters lattice;
@@ -48,8 +50,8 @@ struct TimeRatio {
 };
 
 /// Rounds of a stretch with, two without, one with: what changes slowly cancels.
-TimeRatio time_ratio(const std::function<void()>& with, const std::function<void()>& without, const Effort& effort) {
-  const auto stretch = [](const std::function<void()>& call, int calls) {
+TimeRatio time_ratio(const Call& with, const Call& without, const Effort& effort) {
+  const auto stretch = [](const Call& call, int calls) {
     const double from = seconds_now();
     for (int i = 0; i < calls; ++i) call();
     return seconds_now() - from;
@@ -68,7 +70,7 @@ TimeRatio time_ratio(const std::function<void()>& with, const std::function<void
   return {at(0.5), at(0.25), at(0.75)};
 }
 
-std::vector<std::string> kernels_of(const std::function<void()>& call) {
+std::vector<std::string> kernels_of(const Call& call) {
   for (int i = 0; i < 3; ++i) call();
   KernelLog log;
   call();
@@ -78,7 +80,7 @@ std::vector<std::string> kernels_of(const std::function<void()>& call) {
   return labels;
 }
 
-Json launches(const std::function<void()>& with, const std::function<void()>& without) {
+Json launches(const Call& with, const Call& without) {
   const auto a = kernels_of(with), b = kernels_of(without);
   const std::set<std::string> others(b.begin(), b.end());
   std::string names;
@@ -95,19 +97,20 @@ class Table {
     positions_ = place_cells(usual, lattice, make_cell_types(usual, lattice));
     usual_ = start(usual, positions_);
     vertices_ = double(positions_.size()) / 3;
-    section.note(fmt::format("{} red cells, r = {:g}, {} vertices, phi_eff = {:.2f}; {} x {} x {} nodes; {}-point kernel, float, double membrane.", lattice.cells[0].count, lattice.radius, vertices_,
-                             lattice.phi_effective, lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], usual.accuracy.delta_kernel));
+    section.note(fmt::format("{} red cells, r = {:g}, {} vertices, phi_eff = {:.2f}; {} x {} x {} nodes; {}-point kernel, float, double membrane.",
+                             lattice.cells[0].count, lattice.radius, vertices_, lattice.phi_effective, lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], usual.accuracy.delta_kernel));
   }
 
   void model(const OptionalModel& model) {
     const Running with = variant(model.with), without = variant(model.without);
     const double bytes = double(with.suspension->bytes()) - double(without.suspension->bytes());
-    row(model.name, model.left_out_by, [&] { with.suspension->step(); }, [&] { without.suspension->step(); }, with.problem.cells.empty() ? bytes / with.lattice.box_volume() : bytes / vertices_,
-        with.problem.cells.empty() ? "node" : "vertex");
+    const bool fluid_alone = with.problem.cells.empty();
+    row(model.name, model.left_out_by, [&] { with.suspension->step(); }, [&] { without.suspension->step(); },
+        bytes / (fluid_alone ? with.lattice.box_volume() : vertices_), fluid_alone ? "node" : "vertex");
   }
 
   /// What is done beside some steps: its cost is that of doing it at every step. @param every steps between two by default
-  void activity(const std::string& name, const std::string& left_out_by, const std::function<void()>& with, const std::function<void()>& without, double bytes, const std::string& per, double every) {
+  void activity(const std::string& name, const std::string& left_out_by, const Call& with, const Call& without, double bytes, const std::string& per, double every) {
     row(name, left_out_by, with, without, bytes, per, every);
   }
 
@@ -119,7 +122,7 @@ class Table {
     change(problem);
     return start(problem, positions_);
   }
-  void row(const std::string& name, const std::string& left_out_by, const std::function<void()>& with, const std::function<void()>& without, double bytes, const std::string& per, double every = 1) {
+  void row(const std::string& name, const std::string& left_out_by, const Call& with, const Call& without, double bytes, const std::string& per, double every = 1) {
     Json values{{"left_out_by", left_out_by}};
     values.update(launches(with, without));
     const TimeRatio ratio = time_ratio(with, without, section_.effort());
@@ -170,6 +173,7 @@ int main(int argc, char** argv) {
     sample.step = samples++ * usual.lattice.series_every;
     statistics.add(sample);
   };
-  table.activity("statistics while the run goes on", "`output.statistics = false`", add, [&] { s.step_and_measure(); }, double(LiveStatistics::predicted_bytes(std::size_t(cells))) / cells, "cell", series);
+  const double bytes = double(LiveStatistics::predicted_bytes(std::size_t(cells)));
+  table.activity("statistics while the run goes on", "`output.statistics = false`", add, [&] { s.step_and_measure(); }, bytes / cells, "cell", series);
   return section.finish();
 }

@@ -19,8 +19,9 @@ struct OptionalModel {
 
 /// Red cells between sheared walls with all usual models, `size` radii wide, r = `radius` lattice units.
 inline Problem usual_scene(double size, double radius, double phi_effective) {
-  const std::string text = "[box]\nsize = [" + std::to_string(size) + ", " + std::to_string(size) + ", " + std::to_string(size) + "]\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n" +
-                           "[accuracy]\nallow_unstable = true\nradius = " + std::to_string(radius) + "\n[[cells]]\neffective_volume_fraction = " + std::to_string(phi_effective) + "\n";
+  const std::string wide = std::to_string(size);
+  const std::string text = "[box]\nsize = [" + wide + ", " + wide + ", " + wide + "]\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n[accuracy]\nallow_unstable = true\n" +
+                           "radius = " + std::to_string(radius) + "\n[[cells]]\neffective_volume_fraction = " + std::to_string(phi_effective) + "\n";
   return parse_scene(text, "usual scene");
 }
 
@@ -41,8 +42,8 @@ inline std::vector<OptionalModel> optional_models() {
   return {
       {"cells", "no `[[cells]]`",
        {"membrane_forces", "contact", "bin_", "spread", "sort_", "scatter_force", "gather_velocity", "interpolate", "advance"},
-       {"positions", "velocities", "forces", "force", "velocity", "previous_velocities", "membrane_", "faces", "cell_values", "contact", "bin_", "sort_", "spread_", "guard_type", "guard_f",
-        "guard_e", "guard_r", "guard_c", "guard_s"},
+       {"positions", "velocities", "forces", "force", "velocity", "previous_velocities", "membrane_", "faces", "cell_values", "contact", "bin_",
+        "sort_", "spread_", "guard_type", "guard_f", "guard_e", "guard_r", "guard_c", "guard_s"},
        {}, as_is, remove_cells},
       {"walls (fluid alone)", "`box.walls = false`", {"bounce_back"}, {}, {"exchange_populations"}, rest_without_cells, [](Problem& p) { rest_without_cells(p); p.box.walls = false; }},
       {"body force (fluid alone)", "`flow.kind`", {}, {}, {}, [](Problem& p) { remove_cells(p); p.flow.kind = FlowKind::poiseuille; }, rest_without_cells},

@@ -21,8 +21,8 @@ struct DispensableModel {
 /// What counts as no matter.
 inline constexpr double negligible_viscosity_change = 0.02, negligible_deformation_change = 0.01;
 
-/// Only for scenes inside of what was measured: sheared between walls, one type of red cells or spheres with the default membrane, kernel and contact force; resolution, phi_eff and Ca between
-/// those of pairs of runs that all had no effect worth more than the above.
+/// Only for scenes inside of what was measured: sheared between walls, one type of red cells or spheres with the default membrane, kernel and contact force;
+/// resolution, phi_eff and Ca between those of pairs of runs that all had no effect worth more than the above.
 /// @param vertex_share of the time of a step that vertices take (membranes, contacts, coupling), the rest being the fluid's
 std::vector<DispensableModel> dispensable_models(const Problem& problem, const LatticeParameters& lattice, double vertex_share);
 

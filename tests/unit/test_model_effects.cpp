@@ -15,7 +15,8 @@ using Change = std::function<void(Problem&)>;
 
 /// Red cells (r = 6) or spheres (r = 5) at a fraction and a Ca between those of the studies, else with defaults; changed.
 std::vector<DispensableModel> found(double phi_effective, double ca, const std::string& shape = "red_cell", const Change& change = [](Problem&) {}, double vertex_share = 0.5) {
-  Problem problem = parse_scene("[box]\nsize = [10, 10, 10]\n[flow]\ncapillary_number = " + std::to_string(ca) + "\nreynolds_number_max = 0.2\n[accuracy]\nradius = " + (shape == "sphere" ? "5" : "6") + "\n[run]\nstrain = 1\n" +
+  Problem problem = parse_scene("[box]\nsize = [10, 10, 10]\n[flow]\ncapillary_number = " + std::to_string(ca) + "\nreynolds_number_max = 0.2\n" +
+                                    "[accuracy]\nradius = " + (shape == "sphere" ? "5" : "6") + "\n[run]\nstrain = 1\n" +
                                     "[[cells]]\nshape = '" + shape + "'\neffective_volume_fraction = " + std::to_string(phi_effective) + "\n",
                                 "test.toml");
   change(problem);
