@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include "io/progress.hpp"
 #include "io/scene.hpp"
 #include "physics/memory.hpp"
+#include "physics/model_effects.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -31,6 +33,12 @@ std::vector<std::string> active_models(const Problem& problem, const LatticePara
     if (type.stretching_force > 0) models.push_back("external stretching force on " + type.name);
   if (problem.contact.enabled) models.push_back("contact repulsion between cells and with walls");
   return models;
+}
+
+/// Models that the scene can do without, with what they cost on this machine.
+std::vector<DispensableModel> not_needed(const Problem& problem, const LatticeParameters& lattice, const Calibration& c) {
+  const double step = c.seconds_per_step(lattice);
+  return dispensable_models(problem, lattice, step > 0 ? std::max(0.0, 1 - c.per_node * lattice.box_volume() / step) : 0);
 }
 
 nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, const Calibration& c) {
@@ -80,6 +88,14 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const
                           {"volume_modulus", t.moduli.volume},
                           {"stretching_force", t.stretching_force}});
   j["models"] = active_models(problem, l);
+  j["not_needed"] = nlohmann::json::array();
+  for (const auto& m : not_needed(problem, l, c))
+    j["not_needed"].push_back({{"model", m.model},
+                               {"left_out_by", m.left_out_by},
+                               {"viscosity_change", m.viscosity_change},
+                               {"deformation_change", m.deformation_change},
+                               {"saved", m.saved},
+                               {"measured", m.measured}});
   j["predicted_bytes"] = memory.suspension();
   j["predicted_bytes_peak"] = memory.peak();
   j["predicted_seconds"] = seconds;
@@ -103,7 +119,16 @@ void print_si(const LatticeParameters& l) {
     if (si.force && t.stretching_force > 0) fmt::print("            stretching force on {} = {:.4g} N\n", t.name, t.stretching_force * *si.force);
 }
 
-void print(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, double per_step) {
+void print_not_needed(const std::vector<DispensableModel>& models) {
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto& m = models[i];
+    fmt::print("{}{}: without it eta_r - 1 changes by less than {:.2g} %, D by less than {:.2g} (measured: {}; docs/models.md); --set {} saves about {:.0f} % of a step\n",
+               i == 0 ? "Not needed  " : "            ", m.model, 100 * m.viscosity_change, m.deformation_change, m.measured, m.left_out_by, 100 * m.saved);
+  }
+}
+
+void print(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, const Calibration& calibration) {
+  const double per_step = calibration.seconds_per_step(l);
   fmt::print("Lattice     {} x {} x {} nodes, r = {:g}, tau = {:g}, viscosity = {:.6g}\n", l.nodes[0], l.nodes[1], l.nodes[2], l.radius, l.relaxation_time, l.viscosity);
   if (l.shear_rate > 0) {
     fmt::print("Flow        shear rate = {:.4g} a step, Re = {:.3g}, Ma = {:.3g}", l.shear_rate, l.reynolds_number, l.mach_number);
@@ -137,6 +162,7 @@ void print(const Problem& problem, const LatticeParameters& l, const MemoryEstim
     fmt::print("{}{}\n", first ? "Models      " : "            ", model);
     first = false;
   }
+  print_not_needed(not_needed(problem, l, calibration));
   const double nodes = l.box_volume();
   fmt::print("Run         {} steps", l.steps);
   if (l.steps_per_strain > 0) fmt::print(" = {:g} strain units of {:.0f} steps", double(l.steps) / l.steps_per_strain, l.steps_per_strain);
@@ -160,13 +186,12 @@ int plan(const PlanOptions& options) {
   print_warnings(lattice.warnings);
   const KokkosSession session(options.threads);
   const Calibration calibration = calibrate(problem, lattice);
-  const double per_step = calibration.seconds_per_step(lattice);
-  const double seconds = per_step * double(lattice.steps);
+  const double seconds = calibration.seconds_per_step(lattice) * double(lattice.steps);
   const MemoryEstimate memory = predict_memory(problem, lattice);
   if (options.json)
     std::cout << to_json(problem, lattice, memory, seconds, calibration).dump(2) << "\n";
   else
-    print(problem, lattice, memory, seconds, per_step);
+    print(problem, lattice, memory, seconds, calibration);
   return 0;
 }
 

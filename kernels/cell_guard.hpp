@@ -91,7 +91,7 @@ struct CellGuard {
   CellLimits limits;
   PeriodicBox box;
   VertexVectors x, u, f;
-  Array1<int> cell_of_vertex;
+  Array1<int> cell_of_vertex;                     ///< with contact
   Array1<int> near_begin, near;                   ///< vertices of other cells near each vertex; empty without contact
   Array2<double> centres;                         ///< [cells][3] of the last look, replaced by the present ones
   Kokkos::View<CellState*, MemSpace> states;

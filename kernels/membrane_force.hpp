@@ -22,7 +22,7 @@ struct MembraneTables {
   };
 };
 
-/// Global constraints of one cell (or one pack of cells): forces per area and volume gradient.
+/// Global constraints of one cell (or one pack of cells): forces per area and volume gradient; unused without the term.
 template <class T>
 struct Tension {
   T area;    ///< kappa_A (A - A0)/A0
@@ -31,7 +31,7 @@ struct Tension {
 
 /// Forces of one triangle on its three vertices. `position(v)` returns a vertex as Vec3<T>, `add(v, force)` adds to one; T is Real on devices and a
 /// SIMD pack over cells of the same type on hosts.
-template <class Real, class T, class Law, bool needs_global, class Position, class Add>
+template <class Real, class T, class Law, bool needs_area, bool needs_volume, class Position, class Add>
 KOKKOS_FORCEINLINE_FUNCTION void triangle_forces(const MembraneTables<Real>& tables, const Law& law, const Tension<T>& tension, const int face, const Position& position,
                                                  const Add& add) {
   using Tables = MembraneTables<Real>;
@@ -54,11 +54,11 @@ KOKKOS_FORCEINLINE_FUNCTION void triangle_forces(const MembraneTables<Real>& tab
   dw1 = dw1 * two_area;
   dw2 = dw2 * two_area * determinant_inverse;
   // The gradient of the area has the form of that of det g: d|N|/dx = (d det g/dx)/(2 |N|).
-  if constexpr (needs_global) dw2 = dw2 + T(0.5) * tension.area / Kokkos::sqrt(normal_squared);
+  if constexpr (needs_area) dw2 = dw2 + T(0.5) * tension.area / Kokkos::sqrt(normal_squared);
   Vec3<T> force_b = (dw2 * g12 - dw1 * h12) * edge_c - (dw1 * h11 + dw2 * g22) * edge_b;
   Vec3<T> force_c = (dw2 * g12 - dw1 * h12) * edge_b - (dw1 * h22 + dw2 * g11) * edge_c;
   Vec3<T> force_a = Vec3<T>{T(0), T(0), T(0)} - force_b - force_c;
-  if constexpr (needs_global) {  // dV/dx = N/6 for each corner, summed over a closed surface
+  if constexpr (needs_volume) {  // dV/dx = N/6 for each corner, summed over a closed surface
     const Vec3<T> pressure = (tension.volume * T(1.0 / 6)) * normal;
     force_a = force_a - pressure;
     force_b = force_b - pressure;

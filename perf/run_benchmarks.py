@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-SECTIONS = ["bandwidth", "fluid", "coupling", "membrane", "contact", "step", "scaling", "growth", "memory"]
+SECTIONS = ["bandwidth", "fluid", "coupling", "membrane", "contact", "step", "scaling", "growth", "memory", "models"]
 BUSY = 0.05  # share of the cores that other processes may use before timings say little
 
 

@@ -37,11 +37,15 @@ Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) 
   positions_ = to_device(positions, "positions");
   velocities_ = VertexVectors("velocities", vertex_count_);
   forces_ = VertexVectors("forces", vertex_count_);
-  cell_of_vertex_ = Array1<int>("cell_of_vertex", vertex_count_);
-  const auto cell_of = Kokkos::create_mirror_view(cell_of_vertex_);
+}
+
+Array1<int> Cells::cell_of_vertex() const {
+  const Array1<int> numbers("contact_cell_of_vertex", vertex_count_);
+  const auto host = Kokkos::create_mirror_view(numbers);
   for (const auto& type : types_)
-    for (int i = 0; i < type.count * type.vertices(); ++i) cell_of(type.first_vertex + i) = type.first_cell + i / type.vertices();
-  Kokkos::deep_copy(cell_of_vertex_, cell_of);
+    for (int i = 0; i < type.count * type.vertices(); ++i) host(type.first_vertex + i) = type.first_cell + i / type.vertices();
+  Kokkos::deep_copy(numbers, host);
+  return numbers;
 }
 
 }  // namespace corpuscle

@@ -39,7 +39,8 @@ class Cells {
   VertexVectors positions() const { return positions_; }
   VertexVectors velocities() const { return velocities_; }
   VertexVectors forces() const { return forces_; }
-  Array1<int> cell_of_vertex() const { return cell_of_vertex_; }
+  /// Number of the cell of each vertex, [V]: a new array at each call. Contacts keep one; nothing else needs it.
+  Array1<int> cell_of_vertex() const;
 
   std::vector<double> positions_host() const { return to_host(positions_); }
   std::vector<double> velocities_host() const { return to_host(velocities_); }
@@ -48,13 +49,12 @@ class Cells {
     Kokkos::deep_copy(positions_, to_device(positions));
     Kokkos::deep_copy(velocities_, to_device(velocities));
   }
-  std::size_t bytes() const { return 3 * positions_.span() * sizeof(double) + cell_of_vertex_.span() * sizeof(int); }
+  std::size_t bytes() const { return 3 * positions_.span() * sizeof(double); }
 
  private:
   std::vector<CellType> types_;
   int cell_count_ = 0, vertex_count_ = 0;
   VertexVectors positions_, velocities_, forces_;
-  Array1<int> cell_of_vertex_;
 };
 
 }  // namespace corpuscle

@@ -314,7 +314,7 @@ double Contact::smallest_gap(const VertexVectors& positions) {
 }
 
 std::size_t Contact::bytes() const {
-  return (first_vertex_.span() + binned_.cell.span() + keys_.span() + rows_.begin.span() + rows_.list.span()) * sizeof(int) +
+  return (cell_of_vertex_.span() + first_vertex_.span() + binned_.cell.span() + keys_.span() + rows_.begin.span() + rows_.list.span()) * sizeof(int) +
          built_at_.span() * sizeof(double) + binned_.place.span() * sizeof(float) + bins_.bytes();
 }
 

@@ -41,6 +41,7 @@ class Contact {
   double smallest_gap(const VertexVectors& positions);
 
   const NeighbourRows& neighbours() const { return rows_; }
+  const Array1<int>& cell_of_vertex() const { return cell_of_vertex_; }
   const ContactParameters& parameters() const { return parameters_; }
   std::int64_t rebuilds() const { return rebuilds_; }
   std::size_t bytes() const;

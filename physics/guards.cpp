@@ -135,8 +135,9 @@ void Guards::look_at_cells(const Cells& cells, const Contact* contact, std::int6
   for (const auto& type : cells.types()) smallest = std::min(smallest, type.radius);
   limits.move = fastest_imposed_ * double(std::abs(step - last_step_)) + smallest;
   last_step_ = step;
-  CellGuard guard{tables_, limits, box_, cells.positions(), cells.velocities(), cells.forces(), cells.cell_of_vertex(), {}, {}, centres_, states_};
+  CellGuard guard{tables_, limits, box_, cells.positions(), cells.velocities(), cells.forces(), {}, {}, {}, centres_, states_};
   if (contact != nullptr && contact->rebuilds() > 0) {
+    guard.cell_of_vertex = contact->cell_of_vertex();
     guard.near_begin = contact->neighbours().begin;
     guard.near = contact->neighbours().list;
   }

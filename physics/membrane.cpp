@@ -14,7 +14,7 @@ namespace {
 /// Triangles with less than this share of the mean reference area have bounded bending forces (kernels/membrane_force.hpp).
 constexpr double squeezed_triangle = 0.2;
 
-template <class Real, class Law, bool needs_bending, bool needs_global>
+template <class Real, class Law, bool needs_bending, bool needs_area, bool needs_volume>
 class MembraneOf final : public Membrane {
  public:
   MembraneOf(const Mesh& reference, const MembraneModuli& moduli, const Law& law, int first_vertex, int cell_count) : reference_(reference) {
@@ -79,7 +79,8 @@ class MembraneOf final : public Membrane {
     Policy policy = runs_on_host ? Policy(block.blocks(), 1) : Policy(block.blocks(), Kokkos::AUTO);
     policy.set_scratch_size(block.scratch_level, scratch);
     if (runs_on_host) policy.set_chunk_size(1);
-    Kokkos::parallel_for(label, policy, block);
+    static const std::string name = label();
+    Kokkos::parallel_for(name, policy, block);
   }
 
   std::size_t bytes() const override {
@@ -102,22 +103,25 @@ class MembraneOf final : public Membrane {
 
   Mesh reference_;
   std::vector<MeshEdge> edges_;
-  // Profiles and tests see from the name what a scene pays for.
-  static constexpr const char* label = needs_bending ? (needs_global ? "membrane_forces, bending, global" : "membrane_forces, bending")
-                                                     : (needs_global ? "membrane_forces, global" : "membrane_forces");
+  /// Profiles and tests see from the name what a scene pays for.
+  static std::string label() { return std::string("membrane_forces") + (needs_bending ? ", bending" : "") + (needs_area ? ", area" : "") + (needs_volume ? ", volume" : ""); }
   double bending_stiffness_ = 0;
-  MembraneBlock<Real, Law, needs_bending, needs_global> block_{};
+  MembraneBlock<Real, Law, needs_bending, needs_area, needs_volume> block_{};
 };
 
 /// A membrane computes only what its moduli ask for.
 template <class Real, class Law>
 std::unique_ptr<Membrane> with_needed_terms(const Mesh& reference, const MembraneModuli& moduli, const Law& law, int first_vertex, int cell_count) {
-  const auto make = [&](auto bending, auto global) -> std::unique_ptr<Membrane> {
-    return std::make_unique<MembraneOf<Real, Law, bending.value, global.value>>(reference, moduli, law, first_vertex, cell_count);
-  };
-  const bool global = moduli.global_area > 0 || moduli.volume > 0;
-  if (moduli.bending > 0) return global ? make(std::true_type{}, std::true_type{}) : make(std::true_type{}, std::false_type{});
-  return global ? make(std::false_type{}, std::true_type{}) : make(std::false_type{}, std::false_type{});
+  std::unique_ptr<Membrane> membrane;
+  const auto when = [](bool needed, const auto& f) { needed ? f(std::true_type{}) : f(std::false_type{}); };
+  when(moduli.bending > 0, [&](auto bending) {
+    when(moduli.global_area > 0, [&](auto area) {
+      when(moduli.volume > 0, [&](auto volume) {
+        membrane = std::make_unique<MembraneOf<Real, Law, bending.value, area.value, volume.value>>(reference, moduli, law, first_vertex, cell_count);
+      });
+    });
+  });
+  return membrane;
 }
 
 /// Calls f with the strain law of the moduli. A new law is a line here.

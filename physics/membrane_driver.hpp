@@ -40,7 +40,7 @@ struct GlobalReference {
   double area_modulus = 0, volume_modulus = 0;
 };
 
-template <class Real, class Law, bool needs_bending, bool needs_global>
+template <class Real, class Law, bool needs_bending, bool needs_area, bool needs_volume>
 struct MembraneBlock {
   using Pack = typename detail::PackOf<Real, runs_on_host>::type;
   static constexpr int lanes = detail::PackOf<Real, runs_on_host>::lanes;
@@ -84,21 +84,22 @@ struct MembraneBlock {
       add_to(packed_forces, v, 2, force.z);
     };
     Tension<Pack> tension{Pack(Real(0)), Pack(Real(0))};
-    if constexpr (needs_global) {
+    if constexpr (needs_area || needs_volume) {
       AreaVolume<Pack> sum{Pack(Real(0)), Pack(Real(0))};
       const auto add_face = [&](const int f, AreaVolume<Pack>& total) {
         const Vec3<Pack> a = position(tables.faces(f, 0)), b = position(tables.faces(f, 1)), c = position(tables.faces(f, 2));
         const Vec3<Pack> normal = cross(b - a, c - a);
-        total += AreaVolume<Pack>{Pack(Real(0.5)) * Kokkos::sqrt(dot(normal, normal)), Pack(Real(1.0 / 6)) * dot(a, normal)};
+        if constexpr (needs_area) total.area = total.area + Pack(Real(0.5)) * Kokkos::sqrt(dot(normal, normal));
+        if constexpr (needs_volume) total.volume = total.volume + Pack(Real(1.0 / 6)) * dot(a, normal);
       };
       if constexpr (runs_on_host)
         for (int f = 0; f < faces; ++f) add_face(f, sum);
       else
         Kokkos::parallel_reduce(Kokkos::TeamThreadRange(team, faces), add_face, sum);
-      tension.area = Pack(Real(global.area_modulus / global.area)) * (sum.area - Pack(Real(global.area)));
-      tension.volume = Pack(Real(global.volume_modulus / global.volume)) * (sum.volume - Pack(Real(global.volume)));
+      if constexpr (needs_area) tension.area = Pack(Real(global.area_modulus / global.area)) * (sum.area - Pack(Real(global.area)));
+      if constexpr (needs_volume) tension.volume = Pack(Real(global.volume_modulus / global.volume)) * (sum.volume - Pack(Real(global.volume)));
     }
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, faces), [&](const int f) { triangle_forces<Real, Pack, Law, needs_global>(tables, law, tension, f, position, add); });
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, faces), [&](const int f) { triangle_forces<Real, Pack, Law, needs_area, needs_volume>(tables, law, tension, f, position, add); });
     if constexpr (needs_bending)
       Kokkos::parallel_for(Kokkos::TeamThreadRange(team, edges), [&](const int e) { edge_forces<Real, Pack>(tables, Pack(Real(bending_stiffness)), Pack(Real(collapsed)), e, position, add); });
     team.team_barrier();

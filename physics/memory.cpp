@@ -14,7 +14,7 @@ namespace corpuscle {
 namespace {
 
 constexpr std::size_t vector = 3 * sizeof(double);                         // of one vertex
-constexpr std::size_t state_of_vertex = 3 * vector + sizeof(int);          // positions, velocities, forces; number of the cell
+constexpr std::size_t state_of_vertex = 3 * vector;                        // positions, velocities, forces
 constexpr std::size_t largest_degree = 6;                                        // largest degree of a geodesic mesh; files may have a few vertices with more
 constexpr std::size_t sample_of_cell = 26 * sizeof(double);                // CellSampler
 constexpr std::size_t guard_of_cell = sizeof(CellState) + vector + 2 * sizeof(int);
@@ -30,7 +30,7 @@ std::size_t guard_tables(const CellTypeLattice& type) {
   return type.faces * (3 * sizeof(int) + sizeof(double)) + type.faces * 3 / 2 * 4 * sizeof(int) + (type.faces * 3 + type.vertices) * sizeof(int);
 }
 
-/// Lists, bins and keys of `Contact`. The number of neighbours depends on how the cells lie: a vertex where two surfaces touch (gap about half the reach)
+/// Lists, bins and keys of `Contact`, and the cell of each vertex. The number of neighbours depends on how the cells lie: a vertex where two surfaces touch (gap about half the reach)
 /// sees the disk of the other one that the reach cuts out, and at the volume fraction phi about that fraction of the vertices touches.
 std::size_t contact_bytes(const LatticeParameters& lattice, std::size_t vertices, double reach) {
   double area = 0;
@@ -39,7 +39,7 @@ std::size_t contact_bytes(const LatticeParameters& lattice, std::size_t vertices
   const double disk = 3.14 * 0.75 * reach * reach;
   const double neighbours = std::min(1.0, lattice.phi_effective) * density * disk;
   const double bins = lattice.box_volume() / (reach * reach * reach);
-  return vertices * (vector + 7 * sizeof(int)) + std::size_t(double(vertices) * 1.25 * neighbours * sizeof(int)) + std::size_t(bins * 2 * sizeof(int));
+  return vertices * (vector + 8 * sizeof(int)) + std::size_t(double(vertices) * 1.25 * neighbours * sizeof(int)) + std::size_t(bins * 2 * sizeof(int));
 }
 
 bool packs(const Problem& problem, const LatticeParameters& lattice) {

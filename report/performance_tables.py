@@ -185,6 +185,31 @@ def memory(result):
     )
 
 
+def models(result):
+    """What each optional model costs where it is used; a last column for what is done at some steps only."""
+
+    def cost(r):
+        return "{:+.1f} ({:+.1f} … {:+.1f})".format(*(100 * (r["time_ratio" + which] - 1) for which in ("", "_low", "_high")))
+
+    def kernels(r):
+        fewer = r["launches_without"] - r["launches_with"]
+        return (r["kernels"] or "none of its own") + (f"; {fewer} fewer of others" if fewer > 0 else "")
+
+    rows = [
+        [
+            r["case"],
+            r["left_out_by"],
+            kernels(r),
+            f"{digits(r['bytes'])} a {r['bytes_per']}" if r["bytes"] else "0",
+            cost(r),
+            f"{100 * (r['time_ratio'] - 1) / r['every']:+.2f}" if r["every"] > 1 else "the same",
+        ]
+        for r in rows_of(result, "models")
+    ]
+    head = ["model", "left out by", "kernels with it", "bytes with it", "time of a step with it, % more than without", "at the usual cadence, %"]
+    return table(head, rows) + "\n\n" + " ".join(result["sections"]["models"]["notes"])
+
+
 def peers(result):
     """HemoCell's settings and ours; its cells are coupled in double precision with its own membrane model."""
     fluids, steps = rows_of(result, "fluid"), rows_of(result, "step")
@@ -289,6 +314,7 @@ TABLES = {
     "scaling": scaling,
     "growth": growth,
     "memory": memory,
+    "models": models,
     "peers": peers,
     "targets": targets,
 }

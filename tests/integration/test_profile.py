@@ -44,7 +44,7 @@ def main():
             samples = len(a["series/step"])
             assert np.array_equal(a["cells/centre"], b["cells/centre"]), "measuring changes the results"
         # One more step than the run has measures the final state.
-        for operator, calls in {"membrane_forces, bending, global": steps + 1, "collide_stream": steps + 1, "interpolate": steps + 1, "contact_forces": steps + 1,
+        for operator, calls in {"membrane_forces, bending, area, volume": steps + 1, "collide_stream": steps + 1, "interpolate": steps + 1, "contact_forces": steps + 1,
                                 "average_over_cells": samples, "sample_shape": samples}.items():
             assert parts[operator]["calls"] == calls, (operator, parts[operator], calls)
         with h5py.File(folder / "with/cells.vtkhdf") as file:
