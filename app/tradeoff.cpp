@@ -1,17 +1,21 @@
 // corpuscle tradeoff: a study of error against cost. Its runs are those of a sweep; what they show is compared with a reference.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/analyse.hpp"
 #include "app/commands.hpp"
+#include "app/machine.hpp"
 #include "app/sweep_directory.hpp"
 #include "app/sweep_points.hpp"
 #include "core/error.hpp"
+#include "core/version.hpp"
 #include "io/analysis_file.hpp"
 #include "io/durable.hpp"
 #include "io/sweep_analysis.hpp"
@@ -59,15 +63,39 @@ RunOfStudy look_at(const SweepDirectory& directory, const SweepRun& run, const S
   return result;
 }
 
-/// Core seconds a step of every point, predicted for this machine.
-std::vector<double> predicted_seconds(const std::vector<PlannedPoint>& points) {
-  std::vector<const PlannedPoint*> all;
-  for (const PlannedPoint& p : points) all.push_back(&p);
-  return seconds_per_step(all, std::vector<int>(all.size(), 1));
+std::string machine() { return fmt::format("{}, {} cores", cpu_model(), cpu_cores()); }
+
+/// Costs of points, by name, that an earlier look at the study found with this program on this machine: measuring them takes seconds each.
+std::map<std::string, double> known_costs(const fs::path& output) {
+  std::map<std::string, double> costs;
+  std::ifstream file(output);
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  try {
+    if (!json.is_object() || json.at("machine") != machine() || json.at("version") != version_string() || json.at("git_revision") != git_revision()) return costs;
+    for (const auto& point : json.at("points")) {
+      const auto& predicted = point.at("core_seconds_per_strain").at("predicted");
+      if (predicted.is_number()) costs[point.at("name")] = predicted;
+    }
+  } catch (const nlohmann::json::exception&) {
+  }
+  return costs;
+}
+
+/// Core seconds a unit of strain of every point, predicted for this machine.
+std::vector<double> predicted_costs(const std::vector<PlannedPoint>& points, const fs::path& output) {
+  const auto known = known_costs(output);
+  std::vector<const PlannedPoint*> unknown;
+  for (const PlannedPoint& p : points)
+    if (!known.contains(p.point.name)) unknown.push_back(&p);
+  const auto seconds = seconds_per_step(unknown, std::vector<int>(unknown.size(), 1));
+  std::vector<double> costs;
+  std::size_t next = 0;
+  for (const PlannedPoint& p : points) costs.push_back(known.contains(p.point.name) ? known.at(p.point.name) : seconds[next++] * p.lattice.steps_per_strain);
+  return costs;
 }
 
 std::vector<StudyEntry> collect(const Study& study, const SweepDirectory& directory, const std::vector<PlannedPoint>& points, const std::vector<RefusedPoint>& refused) {
-  const std::vector<double> per_step = predicted_seconds(points);
+  const std::vector<double> costs = predicted_costs(points, directory.path() / "tradeoff.json");
   // Numbers of the planned points, by the points of the study.
   std::vector<std::ptrdiff_t> planned(study.sweep.points.size(), 0);
   for (const RefusedPoint& r : refused) planned[r.point] = -1;
@@ -108,7 +136,7 @@ std::vector<StudyEntry> collect(const Study& study, const SweepDirectory& direct
       entry.vertices = 0;
       for (const auto& type : p.lattice.cells) entry.vertices += double(type.count * type.vertices);
       entry.steps_per_strain = p.lattice.steps_per_strain;
-      entry.point.cost = per_step[at] * p.lattice.steps_per_strain;
+      entry.point.cost = costs[at];
     }
     if (!measured.empty()) {  // some of the repeats are enough
       entry.state = "finished";
@@ -140,7 +168,8 @@ int tradeoff(const TradeoffOptions& options) {
     if (options.dry_run || options.job_array) return code;
   }
   const SweepDirectory directory(options.output, study.sweep.scene, points);
-  const StudyResult result = evaluate(study, collect(study, directory, points, refused));
+  StudyResult result = evaluate(study, collect(study, directory, points, refused));
+  result.machine = machine();
   const bool any = std::any_of(result.entries.begin(), result.entries.end(), [](const StudyEntry& entry) { return entry.state == "finished"; });
   if (!any) {
     if (options.no_run) throw InputError(fmt::format("{} has no finished run of this study: leave --no-run out to run it", options.output));

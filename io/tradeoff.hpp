@@ -38,6 +38,7 @@ struct StudyResult {
   std::vector<tradeoff::KnobStep> steps;
   std::vector<tradeoff::Limit> limiting;
   std::vector<std::string> warnings;
+  std::string machine{};                         ///< for which the costs are predicted
 };
 
 /// Reference, deviations, front, orders, steps and limiting knobs from what was observed.

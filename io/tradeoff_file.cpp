@@ -125,7 +125,7 @@ std::string knobs_page(const StudyResult& result) {
 
 Json tradeoff_json(const StudyResult& result) {
   const Study& study = result.study;
-  Json json = {{"format", tradeoff_format}, {"version", version_string()}, {"git_revision", git_revision()}, {"scene", study.sweep.scene}, {"observables", study.observables}};
+  Json json = {{"format", tradeoff_format}, {"version", version_string()}, {"git_revision", git_revision()}, {"machine", result.machine}, {"scene", study.sweep.scene.substr(study.sweep.scene.rfind('/') + 1)}, {"observables", study.observables}};
   json["knobs"] = study.knobs;
   json["base"] = settings_of(study, study.base_settings);
   for (std::size_t o = 0; o < study.observables.size(); ++o) {
@@ -198,8 +198,8 @@ std::string tradeoff_csv(const StudyResult& result) {
 
 std::string tradeoff_page(const StudyResult& result) {
   const Study& study = result.study;
-  std::string page = fmt::format("# Error against cost\n\nBase scene: {}. Cost: core seconds a unit of strain, predicted for this machine with one thread from counted work; \"measured\": what the runs took.\n\n"
-                                 "| observable | reference | from |\n|---|---|---|\n", study.sweep.scene.substr(study.sweep.scene.rfind('/') + 1));
+  std::string page = fmt::format("# Error against cost\n\nBase scene: {}. Cost: core seconds a unit of strain, predicted for one thread of {} from counted work; \"measured\": what the runs took.\n\n"
+                                 "| observable | reference | from |\n|---|---|---|\n", study.sweep.scene.substr(study.sweep.scene.rfind('/') + 1), result.machine);
   for (std::size_t o = 0; o < study.observables.size(); ++o) {
     const Estimate& r = result.reference.values[o];
     page += fmt::format("| {} | {}{} | {} |\n", study.observables[o], with_error(r.value, r.error), r.converged || std::isnan(r.value) ? "" : " *", result.reference_from[o]);
