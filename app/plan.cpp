@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "io/scene.hpp"
 #include "physics/memory.hpp"
 #include "physics/model_effects.hpp"
+#include "physics/resolution_error.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -40,6 +42,9 @@ std::vector<DispensableModel> not_needed(const Problem& problem, const LatticePa
   const double step = c.seconds_per_step(lattice);
   return dispensable_models(problem, lattice, step > 0 ? std::max(0.0, 1 - c.per_node * lattice.box_volume() / step) : 0);
 }
+
+/// NaN becomes null.
+nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
 
 nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, const Calibration& c) {
   nlohmann::json j;
@@ -88,6 +93,8 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const
                           {"volume_modulus", t.moduli.volume},
                           {"stretching_force", t.stretching_force}});
   j["models"] = active_models(problem, l);
+  const ResolutionError resolution = viscosity_resolution_error(problem, l);
+  j["viscosity_resolution_error"] = {{"value", number(resolution.value)}, {"uncertainty", number(resolution.uncertainty)}, {"reason", resolution.reason}};
   j["not_needed"] = nlohmann::json::array();
   for (const auto& m : not_needed(problem, l, c))
     j["not_needed"].push_back({{"model", m.model},
@@ -161,6 +168,12 @@ void print(const Problem& problem, const LatticeParameters& l, const MemoryEstim
   for (const auto& model : active_models(problem, l)) {
     fmt::print("{}{}\n", first ? "Models      " : "            ", model);
     first = false;
+  }
+  if (!problem.cells.empty()) {
+    const ResolutionError resolution = viscosity_resolution_error(problem, l);
+    if (resolution.known())
+      fmt::print("Accuracy    resolution makes the viscosity {:+.0f} ± {:.0f} % off ({}; docs/accuracy.md)\n", 100 * resolution.value, 100 * resolution.uncertainty, resolution.reason);
+    else fmt::print("Accuracy    what the resolution does to the viscosity isn't known here: {} (docs/accuracy.md)\n", resolution.reason);
   }
   print_not_needed(not_needed(problem, l, calibration));
   const double nodes = l.box_volume();

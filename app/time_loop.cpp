@@ -213,6 +213,10 @@ int run_to_end(const ReadyRun& run) {
   summary.bytes_peak = peak_memory_bytes();
   summary.stopped_by = end.stopped_by;
   summary.warnings = run.lattice.warnings;
+  const ResolutionError resolution = viscosity_resolution_error(run.problem, run.lattice);
+  summary.viscosity_resolution_error = resolution.value;
+  summary.viscosity_resolution_error_uncertainty = resolution.uncertainty;
+  summary.viscosity_resolution_error_reason = resolution.reason;
   std::string failure = end.failure;
   int code = end.code;
   const auto attempt = [&](const auto& write) {  // each on its own: a small summary may fit where the series doesn't

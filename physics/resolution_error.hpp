@@ -1,0 +1,36 @@
+// What the resolution does to the viscosity of a suspension, as the studies of docs/accuracy.md measured it.
+#pragma once
+#include <span>
+#include <string>
+
+#include "physics/problem.hpp"
+#include "physics/units.hpp"
+
+namespace corpuscle {
+
+/// How a scene counts its cells decides what their shells do: see docs/accuracy.md.
+enum class CountedBy { mesh, effective, hydrodynamic };
+const char* name_of(CountedBy counted);
+
+/// A setting that was measured: relative deviation of the viscosity from its limit of infinite resolution.
+struct MeasuredDeviation {
+  double phi = 0;   ///< that the scene asks for
+  CountedBy counted{};
+  int delta_kernel = 0;
+  double radius = 0;
+  double deviation = 0, uncertainty = 0;
+};
+/// Made from docs/accuracy/*.json by report/resolution_table.py; a test compares the two.
+std::span<const MeasuredDeviation> measured_deviations();
+
+struct ResolutionError {
+  double value = 0, uncertainty = 0;   ///< relative: 0.05 means that the viscosity comes out 5 % too large. NaN where it isn't known
+  std::string reason;                  ///< why it isn't known, or what it was interpolated between
+  bool known() const { return uncertainty > 0; }
+};
+
+/// Interpolated between what was measured: linear in 1/radius and in phi, which is 0 where nothing disturbs the fluid. Only for red cells of one type in shear between walls, phi and radius in the
+/// measured range (a radius beyond the finest gets its deviation times the ratio of the radii); everything else isn't known, and the reason says so.
+ResolutionError viscosity_resolution_error(const Problem& problem, const LatticeParameters& lattice);
+
+}  // namespace corpuscle
