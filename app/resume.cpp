@@ -103,6 +103,7 @@ int resume(const ResumeOptions& options) {
                                  from.state.positions.size() / 3, vertices));
   const auto suspension = make_suspension(problem, lattice, types, from.state.positions);
   suspension->restore(from.state, [&](int direction) { return file.population(direction); });
+  if (!changes.empty()) suspension->check();  // before any file says that the new limits hold
   SeriesSummary series(lattice, problem.run.discard);
   series.restore(from.summary);
   auto statistics = live_statistics(problem, lattice);

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <optional>
+#include <set>
+#include <unordered_set>
 
 #include "core/error.hpp"
 #include "io/scene_keys.hpp"
@@ -20,24 +21,17 @@ namespace {
 using scene::one_line;
 using scene::shown;
 
-/// A value of the sweep file and where it stands.
+/// Far more than a sweep needs; with them, reading one takes seconds and some hundred megabytes at most, whatever the file says.
+constexpr std::size_t most_overrides = 32;  ///< of a point, and keys in a match
+constexpr std::size_t most_rules = 100;
+constexpr std::size_t most_settings = 100;  ///< of an axis that changes several keys
+constexpr std::size_t longest_value = 500;
+
+/// A value of the sweep file. Equal values have equal texts: 2.8e-3 and 0.0028, 1.0 and 1 (numbers are written in the shortest way that gives them back).
 struct Value {
   std::string text;  ///< TOML and JSON
   std::vector<std::string> parts;  ///< of a list
 };
-
-/// 2.8e-3 and 0.0028 are one value, "1.0" and 1 too; texts are compared as they are.
-bool same_value(const std::string& a, const std::string& b) {
-  if (a == b) return true;
-  const auto number = [](const std::string& text) -> std::optional<double> {
-    if (text.empty() || std::string_view("+-.0123456789").find(text[0]) == std::string_view::npos) return {};
-    std::size_t end = 0;
-    const double value = std::stod(text, &end);
-    return end == text.size() ? std::optional(value) : std::nullopt;
-  };
-  const auto x = number(a), y = number(b);
-  return x && y && *x == *y;
-}
 
 const Override* find(const std::vector<Override>& overrides, const std::string& key) {
   const auto found = std::find_if(overrides.begin(), overrides.end(), [&](const Override& o) { return o.key == key; });
@@ -46,7 +40,7 @@ const Override* find(const std::vector<Override>& overrides, const std::string& 
 
 /// [[where]]
 struct Rule {
-  std::vector<std::pair<std::string, Value>> match;
+  std::vector<std::pair<std::string, std::set<std::string>>> match;  ///< for each key the values that will do
   std::vector<Override> set;
   std::ptrdiff_t line = 0;
 };
@@ -106,7 +100,11 @@ class SweepReader {
 
   void require_key(const std::string& key, const toml::node& node) const {
     const std::string pattern = scene::pattern_of(key);
-    if (scene::find_key(pattern) != nullptr) return;
+    if (scene::find_key(pattern) != nullptr) {
+      const bool starred = key.starts_with("cells.*"), padded = key.starts_with("cells.0") && !key.starts_with("cells.0.");
+      if (starred || padded) fail(node, fmt::format("{} must give the number of a cell type, from 0 and without leading zeros, for example cells.0.count", one_line(key, 120)));
+      return;
+    }
     if (pattern == "cells" || scene::is_section(pattern)) fail(node, fmt::format("{} is a table of a scene: give a key in it", one_line(key, 120)));
     fail(node, fmt::format("{} isn't a key of a scene; the nearest known key is {}", one_line(key, 120), scene::nearest_key(pattern)));
   }
@@ -114,6 +112,7 @@ class SweepReader {
   Value value(const std::string& key, const toml::node& node) const {
     Value result;
     if (const toml::array* list = node.as_array()) {
+      if (list->size() > most_sweep_points) fail(node, fmt::format("{} has a list of {} values; at most {} are allowed", one_line(key, 120), list->size(), most_sweep_points));
       for (const toml::node& part : *list) {
         const Value inner = value(key, part);
         if (!inner.parts.empty()) fail(node, fmt::format("{} = {} is a list of lists, which no key takes", one_line(key, 120), shown(node)));
@@ -121,11 +120,18 @@ class SweepReader {
       }
       result.text = fmt::format("[{}]", fmt::join(result.parts, ", "));
     } else if (const auto* text = node.as_string()) result.text = scene::quote(text->get());
-    else if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get())) result.text = fmt::format("{}", number->get());
+    else if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get()))
+      result.text = fmt::format("{}", number->get() == 0 ? 0 : number->get());  // -0.0 is 0
     else if (const auto* whole = node.as_integer()) result.text = fmt::format("{}", whole->get());
     else if (const auto* choice = node.as_boolean()) result.text = choice->get() ? "true" : "false";
     else fail(node, fmt::format("{} = {} must be a number, a string, true, false or a list of them", one_line(key, 120), shown(node)));
     return result;
+  }
+
+  Override override_with(const std::string& key, const Value& value, const toml::node& node) const {
+    if (value.text.size() > longest_value)
+      fail(node, fmt::format("{} = {} has {} characters; a value may have {} at most", one_line(key, 120), one_line(value.text), value.text.size(), longest_value));
+    return {key, value.text};
   }
 
   /// The overrides in a table; `a.b = 1`, `"a.b" = 1` and `a = { b = 1 }` are the same.
@@ -138,6 +144,7 @@ class SweepReader {
       }
       require_key(key, node);
       if (std::any_of(into.begin(), into.end(), [&](const auto& other) { return other.first == key; })) fail(node, fmt::format("{} is given twice", key));
+      if (into.size() == most_overrides) fail(node, fmt::format("{} is one key too many: a point, a set or a match has {} at most; put the others into the scene", key, most_overrides));
       into.emplace_back(key, value(key, node));
     }
   }
@@ -145,7 +152,7 @@ class SweepReader {
     std::vector<std::pair<std::string, Value>> values;
     collect(table, "", values);
     std::vector<Override> list;
-    for (auto& [key, v] : values) list.push_back({key, v.text});
+    for (const auto& [key, v] : values) list.push_back(override_with(key, v, table));
     return list;
   }
 
@@ -157,16 +164,23 @@ class SweepReader {
     if (key == nullptr || !key->is_string()) fail(key == nullptr ? table : *key, "an [[axis]] needs key = \"...\", a key of the scene such as \"flow.capillary_number\"");
     SweepAxis axis{key->as_string()->get(), true, {}};
     require_key(axis.name, *key);
+    require_room(table);
     if (rank(axis.name) < axes_.size()) fail(*key, fmt::format("{} has an axis already: put all its values into one", axis.name));
     if (values == nullptr || !values->is_array() || values->as_array()->empty())
       fail(values == nullptr ? table : *values, fmt::format("the axis of {} needs values = [...], a list with at least one value", axis.name));
+    if (values->as_array()->size() > most_sweep_points)
+      fail(*values, fmt::format("the axis of {} has {} values; a sweep has at most {} points", axis.name, values->as_array()->size(), most_sweep_points));
+    std::unordered_set<std::string> seen;
     for (const toml::node& node : *values->as_array()) {
-      const std::string text = value(axis.name, node).text;
-      if (std::any_of(axis.settings.begin(), axis.settings.end(), [&](const auto& other) { return same_value(other.label, text); }))
-        fail(node, fmt::format("the axis of {} has the value {} twice", axis.name, one_line(text)));
-      axis.settings.push_back({text, {{axis.name, text}}});
+      const Override o = override_with(axis.name, value(axis.name, node), node);
+      if (!seen.insert(o.value).second) fail(node, fmt::format("the axis of {} has the value {} twice", axis.name, one_line(o.value)));
+      axis.settings.push_back({o.value, {o}});
     }
     axes_.push_back(std::move(axis));
+  }
+
+  void require_room(const toml::table& table) const {
+    if (axes_.size() == most_overrides) fail(table, fmt::format("there are more than {} axes: put values that don't vary into the scene", most_overrides));
   }
 
   /// An axis whose settings change several keys.
@@ -178,6 +192,8 @@ class SweepReader {
     if (scene::find_key(scene::pattern_of(word)) != nullptr || rank(word) < axes_.size()) fail(*name, fmt::format("{} is a key of the scene or another axis: choose another name", word));
     if (settings == nullptr || !settings->is_array() || settings->as_array()->empty())
       fail(settings == nullptr ? table : *settings, fmt::format("the axis {} needs settings = [{{ label = \"...\", set = {{ ... }} }}, ...], a list with at least one setting", word));
+    require_room(table);
+    if (settings->as_array()->size() > most_settings) fail(*settings, fmt::format("the axis {} has {} settings; at most {} are allowed", word, settings->as_array()->size(), most_settings));
     SweepAxis axis{word, false, {}};
     for (const toml::node& node : *settings->as_array()) {
       const toml::table* entry = node.as_table();
@@ -212,6 +228,8 @@ class SweepReader {
         for (const auto& setting : axis.settings) {
           more.push_back(points[i]);
           more.back().insert(more.back().end(), setting.overrides.begin(), setting.overrides.end());
+          if (more.back().size() > most_overrides)
+            throw InputError(fmt::format("{}: the axes give points with more than {} overrides: put what all points have into the scene", origin_, most_overrides));
           names.push_back(named_[i]);
           names.back().push_back({axis.name, axis.is_key ? setting.label : scene::quote(setting.label)});
         }
@@ -231,7 +249,8 @@ class SweepReader {
   /// The axis of a key, or of a name.
   std::size_t rank(const std::string& key) const {
     const auto has = [&](const SweepAxis& axis) {
-      return axis.name == key || std::any_of(axis.settings.begin(), axis.settings.end(), [&](const auto& setting) { return find(setting.overrides, key) != nullptr; });
+      if (axis.is_key || axis.name == key) return axis.name == key;
+      return std::any_of(axis.settings.begin(), axis.settings.end(), [&](const auto& setting) { return find(setting.overrides, key) != nullptr; });
     };
     return static_cast<std::size_t>(std::find_if(axes_.begin(), axes_.end(), has) - axes_.begin());
   }
@@ -244,9 +263,15 @@ class SweepReader {
       fail(table, "a [[where]] needs match = { ... } with the values of the points that it is for, for example match = { \"flow.capillary_number\" = 0.0028 }");
     if (set == nullptr || !set->is_table() || set->as_table()->empty())
       fail(table, "a [[where]] needs set = { ... } with the overrides of these points, for example set = { \"run.strain\" = 20 }");
+    if (rules_.size() == most_rules) fail(table, fmt::format("there are more than {} [[where]]: write one for several values as a list in its match", most_rules));
     Rule rule;
     rule.line = table.source().begin.line;
-    collect(*match->as_table(), "", rule.match);
+    std::vector<std::pair<std::string, Value>> wanted;
+    collect(*match->as_table(), "", wanted);
+    for (const auto& [key, v] : wanted) {
+      rule.match.emplace_back(key, std::set<std::string>(v.parts.begin(), v.parts.end()));
+      rule.match.back().second.insert(v.text);
+    }
     rule.set = overrides(*set->as_table());
     for (const Override& o : rule.set)
       if (rank(o.key) < axes_.size()) fail(*set, fmt::format("[[where]] can't set {}, which has an axis: write the points with another value as [[also]]", o.key));
@@ -259,9 +284,7 @@ class SweepReader {
     for (std::size_t i = 0; i < sweep.points.size(); ++i) {
       const bool matches = std::all_of(rule.match.begin(), rule.match.end(), [&](const auto& wanted) {
         const Override* own = find(given_[i], wanted.first);
-        const auto& choices = wanted.second.parts;
-        return own != nullptr && (same_value(own->value, wanted.second.text) ||
-                                  std::any_of(choices.begin(), choices.end(), [&](const std::string& choice) { return same_value(own->value, choice); }));
+        return own != nullptr && wanted.second.contains(own->value);
       });
       any = any || matches;
       if (!matches) continue;
@@ -269,8 +292,9 @@ class SweepReader {
         if (find(given_[i], o.key) != nullptr) continue;
         auto& overrides = sweep.points[i].overrides;
         const auto earlier = std::find_if(overrides.begin(), overrides.end(), [&](const Override& other) { return other.key == o.key; });
-        if (earlier == overrides.end()) overrides.push_back(o);
-        else *earlier = o;
+        if (earlier != overrides.end()) *earlier = o;
+        else if (overrides.size() < most_overrides) overrides.push_back(o);
+        else fail(rule.line, fmt::format("this [[where]] gives the point {} more than {} overrides: put what all points have into the scene", sweep.points[i].name, most_overrides));
       }
     }
     if (!any) fail(rule.line, "this [[where]] matches no point: match compares with what [[axis]] and [[also]] give, all of it must agree");
@@ -286,7 +310,7 @@ class SweepReader {
       const bool same = given_[first->second].size() == given_[i].size() &&
                         std::all_of(given_[i].begin(), given_[i].end(), [&](const Override& o) {
                           const Override* other = find(given_[first->second], o.key);
-                          return other != nullptr && same_value(other->value, o.value);
+                          return other != nullptr && other->value == o.value;
                         });
       if (same) throw InputError(fmt::format("{}: the point {} is there twice: leave out the [[also]] that repeats it", origin_, names[i]));
       throw InputError(fmt::format("{}: two points would have the directory {}: choose texts that differ in letters or digits", origin_, names[i]));

@@ -16,7 +16,7 @@ struct Override {
 
 /// One scene of a sweep.
 struct SweepPoint {
-  std::string name;                 ///< for its directory: letters, digits, `.`, `-`, `_`
+  std::string name;                 ///< for its directory: letters, digits, `.`, `-`, `+`, `_`
   std::vector<Override> overrides;  ///< of axes and [[also]] first, then of [[where]]
 };
 

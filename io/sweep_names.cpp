@@ -57,25 +57,32 @@ std::vector<std::string> sweep_names(const std::vector<std::vector<Override>>& g
     }
   std::erase_if(keys, [&](const std::string& key) { return values[key].size() == 1 && points_with[key] == given.size(); });
 
-  std::map<std::string, std::string> label;
-  for (const std::string& key : keys) {
-    const auto choices = labels(key);
-    const auto unique = [&](std::size_t level) {
-      return std::none_of(keys.begin(), keys.end(), [&](const std::string& other) { return other != key && labels(other)[level] == choices[level]; });
-    };
-    label[key] = unique(0) ? choices[0] : unique(1) ? choices[1] : choices[2];
+  std::array<std::map<std::string, int>, 3> times;  // how often each label of each kind is there
+  for (const std::string& key : keys)
+    for (std::size_t level = 0; level < 3; ++level) ++times[level][labels(key)[level]];
+  struct Varying {
+    std::size_t place;
+    std::string label;
+  };
+  std::map<std::string, Varying> varying;
+  for (std::size_t place = 0; place < keys.size(); ++place) {
+    const auto choices = labels(keys[place]);
+    const std::size_t level = times[0][choices[0]] == 1 ? 0 : times[1][choices[1]] == 1 ? 1 : 2;
+    varying[keys[place]] = {place, choices[level]};
   }
 
   std::vector<std::string> names;
   for (const auto& point : given) {
+    std::map<std::size_t, std::string> parts;
+    for (const Override& o : point) {
+      const auto key = varying.find(o.key);
+      if (key == varying.end()) continue;
+      const std::string value = plain(o.value);
+      const bool number = !value.empty() && value[0] >= '0' && value[0] <= '9' && !o.value.starts_with('"');
+      parts[key->second.place] = key->second.label + (number ? "" : "_") + value;
+    }
     std::string name;
-    for (const std::string& key : keys)
-      for (const Override& o : point) {
-        if (o.key != key) continue;
-        const std::string value = plain(o.value);
-        const bool number = !value.empty() && value[0] >= '0' && value[0] <= '9' && !o.value.starts_with('"');
-        name += (name.empty() ? "" : "-") + label[key] + (number ? "" : "_") + value;
-      }
+    for (const auto& [place, part] : parts) name += (name.empty() ? "" : "-") + part;
     names.push_back(name.empty() ? "base" : name);
   }
   return names;

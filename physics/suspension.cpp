@@ -108,9 +108,15 @@ class SuspensionOf final : public Suspension {
     if (!cells_) return;
     cells_->restore(state.positions, state.velocities);
     motion_->restore(state.motion);
+    forces_known_ = false;
   }
 
-  void check() override { guards_->check(fluid_, cells_.get(), contact_.get()); }
+  void check() override {
+    guards_->check(fluid_, cells_.get(), contact_.get());
+    if (!cells_ || forces_known_) return;
+    compute_forces(cells_->positions(), cells_->forces());  // a start is judged by its forces and contacts too, once its positions are good enough to compute them
+    guards_->check(fluid_, cells_.get(), contact_.get());
+  }
   std::array<double, 3> fluid_momentum() const override { return fluid_.momentum(); }
   std::size_t bytes() const override {
     std::size_t total = fluid_.bytes() + guards_->bytes();
@@ -124,6 +130,7 @@ class SuspensionOf final : public Suspension {
  private:
   /// All forces on the vertices. With a sampler the stresses are measured on the way: external forces are no part of the particle stress.
   void compute_forces(const VertexVectors& positions, const VertexVectors& forces, CellSampler* sampler = nullptr) {
+    forces_known_ = true;
     for (const auto& membrane : membranes_) membrane->compute_forces(positions, forces);
     if (sampler) sampler->measure_membrane_stress(*cells_);
     if (contact_) {
@@ -201,6 +208,7 @@ class SuspensionOf final : public Suspension {
   std::unique_ptr<VertexMotion> motion_;
   std::unique_ptr<Guards> guards_;
   std::array<double, 2> spread_on_walls_{};
+  bool forces_known_ = false;  ///< for some positions near the present ones; not before the first step
 };
 
 /// Largest squared speed; anything that is not a number counts as infinite.

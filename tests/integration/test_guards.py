@@ -1,6 +1,8 @@
-"""A run that blows up ends with exit code 3, a message that says where and what to change, the state for inspection, and all that was computed before."""
+"""A run that blows up ends with exit code 3, a message that says where and what to change, the state for inspection, and all that was computed before.
+A start that is broken leaves no checkpoint."""
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -25,6 +27,41 @@ snapshot_every = 0.02
 """
 
 
+def check_broken_start(program, folder, broken):
+    """A packing with a cell that is inside out, and one with a cell inside another: the guards speak before a step is done and a checkpoint written."""
+    placed = "[[cells]]\ncount = 1\nposition = [1.2, 2, 2]\n[[cells]]\ncount = 1\nposition = [3.7, 2, 2]\n"  # where nothing is packed a start isn't settled, either
+    (folder / "placed.toml").write_text(SCENE.replace("[4, 4, 4]", "[5, 4, 4]").replace("[[cells]]\ncount = 6\n", placed))
+    healthy = folder / "healthy"
+    subprocess.run([program, "run", folder / "placed.toml", "--output", healthy, "--set", "run.steps=5"], check=True, capture_output=True)
+    for name, change, guard in (("inside_out", lambda cells: 2 * cells[0].mean(axis=0) - cells[0], "volume"),
+                                ("pierced", lambda cells: cells[0] + cells[1].mean(axis=0) - cells[0].mean(axis=0) + [0.7, 0.5, 0.3], "contact")):
+        packing = folder / f"{name}.h5"
+        shutil.copy(healthy / "packing.h5", packing)
+        with h5py.File(packing, "r+") as file:
+            cells = file["positions"][:].reshape(2, -1, 3)
+            cells[0] = change(cells)
+            file["positions"][:] = cells.reshape(-1, 3)
+        output = folder / name
+        shutil.copytree(healthy, output)  # with the checkpoints of another run
+        message, summary = broken(name, f"run.packing={packing}", "--overwrite", scene="placed.toml")
+        assert f"The guard on {guard} " in message and "before step 0" in message and "broken.vtkhdf" in message and summary["steps"] == 0, message
+        assert not list(output.glob("checkpoint*")), list(output.iterdir())
+        refused = subprocess.run([program, "resume", output], capture_output=True, text=True)
+        assert refused.returncode == 2 and "holds no checkpoint" in refused.stderr, refused
+        report = json.loads(subprocess.run([program, "check", output, "--json"], capture_output=True, text=True).stdout)
+        assert [p["problem"] for p in report["problems"]] == ["holds no sample"] and report["resumes_at"] == -1, report
+
+
+def check_limit_on_resume(program, folder):
+    """A limit that the state is beyond already: nothing on disk says that the run has it."""
+    before = {path.name: path.read_bytes() for path in (folder / "healthy").iterdir() if path.is_file()}
+    stopped = subprocess.run([program, "resume", folder / "healthy", "--until", "steps=9", "--set", "guards.speed=1e-9"], capture_output=True, text=True)
+    assert stopped.returncode == 3 and stopped.stderr.count("\n") == 1 and "guards.speed" in stopped.stderr, stopped
+    after = {path.name: path.read_bytes() for path in (folder / "healthy").iterdir() if path.is_file()}
+    assert {name for name in before if before[name] != after.get(name)} == set(), before.keys()
+    subprocess.run([program, "resume", folder / "healthy", "--until", "steps=9"], check=True, capture_output=True)
+
+
 def main():
     program = sys.argv[1]
     with tempfile.TemporaryDirectory() as name:
@@ -33,7 +70,7 @@ def main():
         (folder / "fluid.toml").write_text("[box]\nsize = [2, 2, 4]\n[accuracy]\nradius = 4\n[run]\nsteps = 50\n")
 
         def broken(output, *settings, scene="scene.toml"):
-            options = [part for setting in settings for part in ("--set", setting)]
+            options = [part for setting in settings for part in ([setting] if setting.startswith("--") else ["--set", setting])]
             done = subprocess.run([program, "run", folder / scene, "--output", folder / output, *options], capture_output=True, text=True)
             assert done.returncode == 3, (output, done.returncode, done.stderr)
             lines = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
@@ -69,6 +106,9 @@ def main():
         # The next run into the directory leaves nothing of it.
         subprocess.run([program, "run", folder / "scene.toml", "--output", folder / "speed", "--overwrite", "--set", "run.steps=10"], check=True, capture_output=True)
         assert not list((folder / "speed").glob("broken*"))
+
+        check_broken_start(program, folder, broken)
+        check_limit_on_resume(program, folder)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include "physics/memory.hpp"
 #include "physics/packing.hpp"
 #include "tests/catch.hpp"
+#include "tests/contains.hpp"
 #include "tests/unit/running.hpp"
 
 using namespace corpuscle;
@@ -97,4 +98,36 @@ TEST_CASE("A run that blows up is stopped with the cell, the step and what to do
   CHECK(message.find("The guard on ") == 0);
   CHECK(message.find("cell 0 (sphere)") != std::string::npos);
   CHECK(message.find("shear_modulus") != std::string::npos);
+}
+
+TEST_CASE("The guards see forces and contact of a start, and looking changes nothing", "[suspension][guards]") {
+  const std::string scene = "[box]\nsize = [6, 4, 4]\n[flow]\ncapillary_number = 0.05\n[accuracy]\nradius = 4\n[run]\nsteps = 20\n"
+                            "[[cells]]\nshape = 'sphere'\ncount = 1\nposition = [1.5, 2, 2]\n[[cells]]\nshape = 'sphere'\ncount = 1\nposition = [4, 2, 2]\n";
+  const auto looked_at = start(scene), left_alone = start(scene);
+  for (int i = 0; i < 20; ++i) {
+    if (i == 0) looked_at.suspension->check();
+    looked_at.suspension->step();
+    left_alone.suspension->step();
+  }
+  CHECK(looked_at.suspension->snapshot(false).positions == left_alone.suspension->snapshot(false).positions);
+
+  const auto types = make_cell_types(looked_at.problem, looked_at.lattice);
+  const auto healthy = place_cells(looked_at.problem, looked_at.lattice, types);
+  const auto complaint = [&](const std::vector<double>& positions) {
+    const auto suspension = make_suspension(looked_at.problem, looked_at.lattice, types, positions);
+    try {
+      suspension->check();
+    } catch (const SimulationError& broken) {
+      return std::string(broken.what());
+    }
+    return std::string();
+  };
+  CHECK(complaint(healthy) == "");
+  const std::size_t one_cell = 3 * std::size_t(types[0].vertices());
+  auto pierced = healthy;
+  for (std::size_t i = 0; i < one_cell; i += 3) pierced[i] += 4;  // of the 10 between the centres, which are 8 apart when the cells touch
+  CHECK_THAT(complaint(pierced), Contains("The guard on contact stopped the run before step 0"));
+  auto infinite = healthy;
+  for (std::size_t i = 0; i < one_cell; ++i) infinite[i] *= 1e120;
+  CHECK_THAT(complaint(infinite), Contains("The guard on numbers stopped the run before step 0"));
 }

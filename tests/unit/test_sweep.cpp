@@ -1,4 +1,7 @@
 // Sweep files: the matrix, names of points, [[also]], [[where]], and every way to get one wrong.
+#include <fmt/format.h>
+
+#include <chrono>
 #include <fstream>
 #include <vector>
 
@@ -148,6 +151,10 @@ TEST_CASE("sweep: what is wrong is told with its line", "[sweep]") {
     INFO(b.text);
     CHECK(complaint_lacks([&] { parse(b.text); }, b.words) == "");
   }
+  for (const char* type : {"00", "*"}) {
+    const std::string key = fmt::format("cells.{}.count", type);
+    CHECK(complaint_lacks([&] { parse(scene + "[[also]]\n\"" + key + "\" = 1"); }, {"sweep.toml:3: ", key.c_str(), "without leading zeros"}) == "");
+  }
   std::string many = scene;
   for (const char* key : {"run.seed", "run.strain", "run.discard"}) {
     many += std::string("[[axis]]\nkey = \"") + key + "\"\nvalues = [";
@@ -196,6 +203,49 @@ settings = [ { label = "base", set = {} }, { label = "small", set = { "accuracy.
   }
   // The table of a study is none of a sweep.
   CHECK(complaint_lacks([] { parse(paper + "[study]\n"); }, {"study isn't a key of a sweep"}) == "");
+}
+
+TEST_CASE("sweep: values are told apart exactly, as far as numbers reach", "[sweep]") {
+  const auto with = [](const std::string& values) { return names(parse("scene = \"s.toml\"\n[[axis]]\nkey = \"run.seed\"\nvalues = [" + values + "]")); };
+  CHECK(with("1e-310, 4.9e-324, 0") == Names{"seed1e-310", "seed5e-324", "seed0"});  // numbers that strtod calls out of range
+  CHECK(with("9007199254740992, 9007199254740993") == Names{"seed9007199254740992", "seed9007199254740993"});  // one double, two seeds
+  CHECK(complaint_lacks([&] { with("0, -0.0"); }, {"the value 0 twice"}) == "");
+  const std::string list = "scene = \"s.toml\"\n[[axis]]\nkey = \"box.size\"\nvalues = [[8, 8, 8], [8, 8.0, 8]]";
+  CHECK(complaint_lacks([&] { parse(list); }, {"the value [8, 8, 8] twice"}) == "");
+}
+
+TEST_CASE("sweep: what would take hours or gigabytes is refused, or read, within seconds", "[sweep]") {
+  const std::string scene = "scene = \"s.toml\"\n";
+  const auto repeated = [](int count, const auto& text) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text(i);
+    return all;
+  };
+  const auto number = [](int i) { return std::to_string(i) + ",\n"; };
+  const auto one_axis = [](int i) { return fmt::format("[[axis]]\nkey = \"cells.{}.count\"\nvalues = [1]\n", i); };
+  const auto one_key = [](int i) { return fmt::format("cells.{}.count = 1\n", i); };
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK(complaint_lacks([&] { parse(scene + "[[axis]]\nkey = \"run.seed\"\nvalues = [" + repeated(100'000, number) + "]"); }, {"run.seed has 100000 values", "at most 10000"}) == "");
+  CHECK(complaint_lacks([&] { parse(scene + repeated(33, one_axis)); }, {"sweep.toml:98: ", "more than 32 axes"}) == "");
+  CHECK(complaint_lacks([&] { parse(scene + "[[also]]\n" + repeated(33, one_key)); }, {"sweep.toml:", ".count is one key too many", "32 at most"}) == "");
+  CHECK(complaint_lacks([&] { parse(paper + "[[where]]\nset = { \"run.strain\" = 1 }\nmatch = { \"flow.capillary_number\" = [" + repeated(10'001, number) + "] }"); },
+                        {"list of 10001 values", "at most 10000"}) == "");
+  const auto rule = [](int i) { return fmt::format("[[where]]\nmatch = {{ flow.capillary_number = 0.081 }}\nset = {{ cells.{}.count = 1 }}\n", i); };
+  CHECK(complaint_lacks([&] { parse(paper + repeated(101, rule)); }, {"sweep.toml:309: ", "more than 100 [[where]]"}) == "");
+  CHECK(complaint_lacks([&] { parse(paper + repeated(31, rule)); }, {"sweep.toml:99: ", "phi0.12-Ca0.081 more than 32 overrides"}) == "");
+  CHECK(complaint_lacks([&] { parse(scene + "[[also]]\nrun.packing = \"" + std::string(499, 'a') + "\""); }, {"sweep.toml:2: ", "501 characters", "500 at most"}) == "");
+  // The most that is allowed: every point with keys of its own, all of them in its name or matched by every rule.
+  const auto point = [](int i) {
+    std::string text = "[[also]]\n";
+    for (int k = 0; k < 12; ++k) text += fmt::format("cells.{}.count=1\n", 12 * i + k);
+    return text;
+  };
+  CHECK(parse(scene + repeated(2'000, point)).points.size() == 2'000);
+  std::string most = scene + repeated(31, one_axis) + "[[axis]]\nkey = \"run.seed\"\nvalues = [" + repeated(10'000, number) + "]\n", match;
+  for (int i = 0; i < 31; ++i) match += fmt::format("cells.{}.count = 1, ", i);
+  most += repeated(100, [&](int) { return "[[where]]\nmatch = { " + match + "run.seed = 5 }\nset = { run.strain = 1 }\n"; });
+  CHECK(complaint_lacks([&] { parse(most); }, {"gives the point seed5 more than 32 overrides"}) == "");
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(60));
 }
 
 TEST_CASE("sweep: files are read as scenes are", "[sweep]") {
