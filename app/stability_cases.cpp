@@ -145,8 +145,7 @@ void coupling_intervals(List& list, int u) {
     s.coupling_every = interval;
     s.volume /= interval;  // what isn't searched for must keep clear of its own limit
     s.area /= interval;
-    const std::string where = fmt::format("coupled every {} steps", interval);
-    list.add(parameter, unit, s, search, set, s.phi == ProbeScene{}.phi ? where : fmt::format("phi_eff = {:g}, {}", s.phi, where));
+    list.add(parameter, unit, s, search, set, fmt::format("coupled every {} steps", interval));
   };
   const auto red_cell = [&](int kernel, double tau, int interval) {
     add("coupling", "eta_0", soft_in_flow(kernel, u, tau), interval, LimitSearch{7.0 / interval, 0.02, 300, 1.15}, set_red_cell);
@@ -154,9 +153,6 @@ void coupling_intervals(List& list, int u) {
   if (VertexUpdate(u) == VertexUpdate::chebyshev) {
     const LimitSearch stiff{20, 0.02, 300, 1.15};
     for (const double tau : {1.0, 0.6}) add("coupling", "eta_0", soft_in_flow(3, u, tau), 4, stiff, set_red_cell);
-    ProbeScene full = soft_in_flow(3, u);
-    full.phi = 0.88;
-    add("phi_eff", "eta_0", full, 4, LimitSearch{5, 0.02, 300, 1.15}, set_red_cell);
     return;
   }
   for (const int interval : {2, 3, 4, 8}) red_cell(3, 1, interval);

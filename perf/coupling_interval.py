@@ -3,7 +3,7 @@
 
 usage: perf/coupling_interval.py PROGRAM [TABLE ...]     PROGRAM is bin/corpuscle; prints tables for docs/performance.md; about two minutes of computing
 
-Tables: capsule (deformation of one neo-Hookean capsule), cells (viscosity of red cells), stiff (the same with stiff membranes and the chebyshev update).
+Tables: capsule (deformation of one neo-Hookean capsule), cells (viscosity of red cells), stiff (the same with membranes of 24 eta_0, in the last row 48 eta_0, and the chebyshev update).
 Time is the processor time of the process in user mode over its steps, on one thread: other processes disturb it less than the time that passes. Packing is not in it: all runs of a
 table start from one packing.
 """
@@ -68,7 +68,7 @@ preset = "draft"
 radius = 6
 vertex_update = "chebyshev"
 membrane_precision = "single"
-shear_modulus = 4                 # 24 eta_0
+shear_modulus = 4
 [run]
 strain = 0.3
 [output]
@@ -128,7 +128,8 @@ def cells(program, folder):
 
 
 def stiff(program, folder):
-    viscosities(program, folder, STIFF, [(1,), (2,), (4,)], lambda interval: {"accuracy.coupling_every": interval, "accuracy.allow_unstable": "true"})
+    viscosities(program, folder, STIFF, [(1, 4), (2, 4), (4, 4), (1, 8)],
+                lambda interval, modulus: {"accuracy.coupling_every": interval, "accuracy.shear_modulus": modulus, "accuracy.allow_unstable": "true"})
 
 
 def main():
