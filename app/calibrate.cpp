@@ -18,15 +18,16 @@ double seconds_per_step(const Step& step) {
   return best_seconds([&] { step(), step(); }, 3) / 2;
 }
 
+/// Mean over the steps from one coupling to the next.
 template <class Real>
-double fluid_seconds(const FluidParameters& parameters) {
+double fluid_seconds(const FluidParameters& parameters, int coupling_every) {
   Fluid<Real> fluid(parameters);
   fluid.initialise();
   return seconds_per_step([&] {
     if (parameters.needs_force) fluid.scatter_force();
-    fluid.collide_stream();
+    fluid.collide_stream_holding_force(coupling_every);
     if (parameters.needs_force) fluid.gather_velocity();
-  });
+  }) / coupling_every;
 }
 
 /// Largest extent of the shapes along z, in which cells lie flat.
@@ -40,7 +41,7 @@ double largest_height(const std::vector<CellType>& types) {
   return height;
 }
 
-/// Seconds a step of the searches for neighbours: what one takes beyond the forces, times how often the fastest vertices leave the skin.
+/// Seconds a coupling of the searches for neighbours: what one takes beyond the forces, times how often the fastest vertices leave the skin.
 double search_seconds(const LatticeParameters& lattice, const Cells& cells) {
   ContactParameters parameters;
   parameters.strength = lattice.contact_strength;
@@ -53,7 +54,7 @@ double search_seconds(const LatticeParameters& lattice, const Cells& cells) {
   const double with_search = best_seconds([&] { contact.add_forces(here, cells.forces()), contact.add_forces(there, cells.forces()); }, 2) / 2;
   contact.add_forces(here, cells.forces());
   const double without = best_seconds([&] { contact.add_forces(here, cells.forces()); }, 2);
-  const double fastest = lattice.mach_number * speed_of_sound;
+  const double fastest = lattice.mach_number * speed_of_sound * lattice.coupling_every;
   return std::max(0.0, with_search - without) * std::min(1.0, fastest / (0.5 * parameters.skin));
 }
 
@@ -62,15 +63,15 @@ double search_seconds(const LatticeParameters& lattice, const Cells& cells) {
 double Calibration::seconds_per_step(const LatticeParameters& lattice) const {
   double vertices = 0;
   for (const auto& type : lattice.cells) vertices += double(type.count * type.vertices);
-  return per_node * lattice.box_volume() + (per_vertex + per_vertex_sampled / double(lattice.series_every)) * vertices;
+  return per_node * lattice.box_volume() + (per_vertex / lattice.coupling_every + per_vertex_sampled / double(lattice.series_every)) * vertices;
 }
 
 Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) {
   const bool single = problem.accuracy.precision == Precision::single_precision;
-  const auto fluid = [&](const std::array<int, 3>& nodes) {
+  const auto fluid = [&](const std::array<int, 3>& nodes, int coupling_every) {
     FluidParameters parameters = fluid_parameters(problem, lattice);
     parameters.nodes = nodes;
-    return single ? fluid_seconds<float>(parameters) : fluid_seconds<double>(parameters);
+    return single ? fluid_seconds<float>(parameters, coupling_every) : fluid_seconds<double>(parameters, coupling_every);
   };
   // At most about 2 M nodes, larger than the caches where the scene is.
   std::array<int, 3> nodes = lattice.nodes;
@@ -79,7 +80,7 @@ Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) 
     longest = (longest + 1) / 2;
   }
   Calibration result;
-  result.per_node = fluid(nodes) / (double(nodes[0]) * nodes[1] * nodes[2]);
+  result.per_node = fluid(nodes, lattice.coupling_every) / (double(nodes[0]) * nodes[1] * nodes[2]);
   if (problem.cells.empty()) return result;
 
   // A few cells of each type side by side, flat, in layers as far apart as the volume fraction asks for, just not touching, in a box of their own.
@@ -117,10 +118,11 @@ Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) 
       positions.insert(positions.end(), placed.begin(), placed.end());
     }
   const double searches = problem.contact.enabled ? search_seconds(small_lattice, Cells(types, positions)) : 0;
+  small_lattice.coupling_every = 1;  // of which a step is the fluid's share, known by itself, and a coupling
   const auto suspension = make_suspension(small, small_lattice, std::move(types), positions);
   const double coupled = seconds_per_step([&] { suspension->step(); });
   const double sampled = seconds_per_step([&] { suspension->step_and_measure(); });
-  result.per_vertex = (std::max(0.0, coupled - fluid(small_lattice.nodes)) + searches) / double(vertices);
+  result.per_vertex = (std::max(0.0, coupled - fluid(small_lattice.nodes, 1)) + searches) / double(vertices);
   result.per_vertex_sampled = std::max(0.0, sampled - coupled) / double(vertices);
   return result;
 }

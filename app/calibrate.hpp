@@ -5,9 +5,9 @@
 
 namespace corpuscle::app {
 
-/// Seconds of a time step = per_node * nodes + per_vertex * vertices; of a sample more by per_vertex_sampled * vertices.
+/// Seconds of a time step = per_node * nodes; of a coupling more by per_vertex * vertices, of a sample by per_vertex_sampled * vertices.
 struct Calibration {
-  double per_node = 0;
+  double per_node = 0;            ///< mean over the steps from one coupling to the next
   double per_vertex = 0;          ///< membranes, contacts with their share of the searches for neighbours, coupling; 0 without cells
   double per_vertex_sampled = 0;
   /// Of a scene like the one that was measured.

@@ -23,7 +23,8 @@ std::vector<std::string> active_models(const Problem& problem, const LatticePara
   if (problem.box.walls) models.push_back("half-way bounce-back walls in z");
   if (lattice.body_force != 0) models.push_back("uniform body force along x");
   if (problem.cells.empty()) return models;
-  models.push_back(fmt::format("immersed boundary, {}-point kernel", problem.accuracy.delta_kernel));
+  models.push_back(fmt::format("immersed boundary, {}-point kernel{}", problem.accuracy.delta_kernel,
+                               lattice.coupling_every > 1 ? fmt::format(", coupled every {} steps", lattice.coupling_every) : ""));
   for (const auto& type : lattice.cells) {
     std::string terms = type.moduli.law == StrainLawKind::skalak ? "Skalak" : "neo-Hookean";
     if (type.moduli.bending > 0) terms += " + bending";
@@ -69,6 +70,7 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const
   j["steps_per_strain"] = l.steps_per_strain;
   j["series_every_steps"] = l.series_every;
   j["snapshot_every_steps"] = l.snapshot_every;
+  j["coupling_every_steps"] = l.coupling_every;
   for (const auto& limit : l.limits) j["limits"].push_back({{"name", limit.name}, {"shear_rate", limit.shear_rate}});
   for (const auto& m : l.margins) j["stability"].push_back({{"name", m.name}, {"value", m.value}, {"limit", m.limit}});
   j["warnings"] = l.warnings;

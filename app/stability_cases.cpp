@@ -139,6 +139,31 @@ void global_terms(List& list, int u) {
   }
 }
 
+/// Membranes and fluid coupled every few steps only.
+void coupling_intervals(List& list, int u) {
+  const auto add = [&](const char* parameter, const char* unit, ProbeScene s, int interval, const LimitSearch& search, void (*set)(ProbeScene&, double)) {
+    s.coupling_every = interval;
+    s.volume /= interval;  // what isn't searched for must keep clear of its own limit
+    s.area /= interval;
+    list.add(parameter, unit, s, search, set, fmt::format("coupled every {} steps", interval));
+  };
+  const auto red_cell = [&](int kernel, double tau, int interval) {
+    add("coupling", "eta_0", soft_in_flow(kernel, u, tau), interval, LimitSearch{7.0 / interval, 0.02, 300, 1.15}, set_red_cell);
+  };
+  if (VertexUpdate(u) == VertexUpdate::chebyshev) {
+    const LimitSearch stiff{20, 0.02, 300, 1.15};
+    for (const double tau : {1.0, 0.6}) add("coupling", "eta_0", soft_in_flow(3, u, tau), 4, stiff, set_red_cell);
+    return;
+  }
+  for (const int interval : {2, 3, 4, 8}) red_cell(3, 1, interval);
+  for (const int kernel : {2, 4})
+    for (const int interval : {2, 4}) red_cell(kernel, 1, interval);
+  for (const double tau : {0.6, 2.0})
+    for (const int interval : {2, 4}) red_cell(3, tau, interval);
+  add("kappa_V", "response", soft_in_flow(3, u), 4, LimitSearch{0.4, 0.02, 100, 1.15}, set_volume);
+  add("contact", "eta_0", soft_in_flow(3, u), 4, LimitSearch{100, 0.1, 1000, 1.15}, set_contact);
+}
+
 void precision(List& list, int u) {
   ProbeScene s = soft_in_flow(3, u);
   s.precision = Precision::single_precision;
@@ -201,6 +226,7 @@ std::vector<StabilityCase> stability_cases() {
     global_terms(list, u);
     precision(list, u);
     resolution(list, u);
+    if (VertexUpdate(u) != VertexUpdate::euler) coupling_intervals(list, u);
     if (u == 0) {  // what has to do with the fluid, or with large deformation, doesn't depend on the update
       capillary_numbers(list);
       fluid(list);

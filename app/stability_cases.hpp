@@ -15,6 +15,7 @@ struct ProbeScene {
   enum class Kind { at_rest, in_flow, fluid_only } kind = Kind::at_rest;
   int delta_kernel = 3;
   VertexUpdate update = VertexUpdate::averaged;
+  int coupling_every = 1;  ///< time steps from one coupling of membranes and fluid to the next
   double relaxation_time = 1;
   double edge = 1;        ///< mean edge of the mesh in lattice units
   double radius = 5;
@@ -26,7 +27,7 @@ struct ProbeScene {
   double contact = 0.3;                         ///< kappa_int / eta_0
   double mach = 0.1;                            ///< fluid only: wall velocity / speed of sound
   double capillary_number = 0;                  ///< > 0: states kappa_S of a cell in flow
-  std::int64_t steps = 3000;
+  std::int64_t steps = 3000;                    ///< couplings
 
   /// Red cell: kappa_alpha = 2.5 kappa_S, kappa_B = kappa_S r^2/405, contact as stiff as kappa_S.
   void set_red_cell(double kappa);

@@ -98,6 +98,7 @@ Prober::Built Prober::build(const ProbeScene& scene) {
   p.accuracy.radius = scene.radius;
   p.accuracy.delta_kernel = scene.delta_kernel;
   p.accuracy.vertex_update = scene.update;
+  p.accuracy.coupling_every = scene.coupling_every;
   p.accuracy.relaxation_time = scene.relaxation_time;
   p.accuracy.precision = scene.precision;
   p.accuracy.collision = scene.collision;
@@ -142,6 +143,7 @@ Prober::Built Prober::build(const ProbeScene& scene) {
     soft.accuracy.delta_kernel = 4;
     soft.accuracy.vertex_update = VertexUpdate::averaged;
     soft.accuracy.relaxation_time = 1;
+    soft.accuracy.coupling_every = 1;
     LatticeParameters l = to_lattice(soft);
     ProbeScene moduli = scene;
     moduli.set_red_cell(0.1);

@@ -23,7 +23,7 @@
 namespace corpuscle::app {
 
 Checkpoints::Checkpoints(const std::filesystem::path& directory, const Problem& problem, const LatticeParameters& lattice)
-    : store_(directory), every_(60 * problem.output.checkpoint_every), every_steps_(problem.output.checkpoint_steps.value_or(0)),
+    : store_(directory), every_(60 * problem.output.checkpoint_every), every_steps_(lattice.next_coupling(problem.output.checkpoint_steps.value_or(0))),
       every_strain_(lattice.checkpoint_every) {
   contents_.scene = to_toml(problem);
   contents_.version = version_string();
@@ -125,8 +125,8 @@ Stop stop_asked(const ReadyRun& run) {
 }
 
 RunEnd simulate(const ReadyRun& run) {
-  constexpr std::int64_t progress_every = 32;
   const LatticeParameters& lattice = run.lattice;
+  const std::int64_t progress_every = lattice.next_coupling(32);
   ProgressLine line(run);
   const Kokkos::Timer timer;
   const auto sample_now = [&] {
@@ -145,7 +145,7 @@ RunEnd simulate(const ReadyRun& run) {
   Stop stop = Stop::none;
   try {
     if (run.first_step == 0) checkpoint();  // unless the start is broken, there is one
-    for (; end.steps < lattice.steps; ++end.steps) {
+    for (; end.steps < lattice.steps; end.steps += lattice.coupling_every) {
       const std::int64_t step = end.steps;
       stop = stop_asked(run);
       if (stop != Stop::none) break;
@@ -156,11 +156,11 @@ RunEnd simulate(const ReadyRun& run) {
       if (lattice.snapshot_every > 0 && step % lattice.snapshot_every == 0) run.outputs.snapshot(run.suspension);
       if (step % lattice.series_every == 0) {
         const Sample sample = sample_now();
-        line.show(step + 1, sample);
+        line.show(step + lattice.coupling_every, sample);
       } else {
         run.suspension.step();
         if (step % lattice.guard_every == 0) run.suspension.check();
-        if (step % progress_every == 0) line.show(step + 1);
+        if (step % progress_every == 0) line.show(step + lattice.coupling_every);
       }
     }
     if (stop != Stop::none) {

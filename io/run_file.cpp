@@ -144,6 +144,7 @@ void write_lattice(hdf5::File& file, const LatticeParameters& lattice) {
   integer("steps", lattice.steps);
   integer("series_every", lattice.series_every);
   integer("snapshot_every", lattice.snapshot_every);
+  integer("coupling_every", lattice.coupling_every);
   for (std::size_t i = 0; i < lattice.limits.size(); ++i) {
     const auto group = fmt::format("/lattice/limits/{}", i);
     file.create_group(group);

@@ -27,6 +27,7 @@ class Checker {
     for (std::size_t i = 0; i < p_.cells.size(); ++i) cell(p_.cells[i], fmt::format("cells.{}.", i));
     names();
     duration();
+    coupling();
     files();
     meaningless();
   }
@@ -182,6 +183,13 @@ class Checker {
       const double value = std::string_view(key) == "output.series_every" ? p_.output.series_every : p_.output.snapshot_every;
       if (value != std::floor(value)) fail(key, fmt::format("{} must be a whole number of time steps with flow.kind = \"rest\"", said(key)));
     }
+  }
+
+  /// With several steps between two couplings vertices move with one mean velocity of the fluid, whatever the update.
+  void coupling() {
+    if (p_.accuracy.coupling_every > 1 && p_.accuracy.vertex_update == VertexUpdate::euler && !p_.cells.empty())
+      fail("accuracy.coupling_every", fmt::format("{} contradicts {}: vertices don't move with the velocity of the last step then; remove one of both", said("accuracy.coupling_every"),
+                                                  said("accuracy.vertex_update")));
   }
 
   void files() {

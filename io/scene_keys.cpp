@@ -77,6 +77,8 @@ const Key table[] = {
     {"accuracy.precision", CORPUSCLE_FIELD(P.accuracy.precision), any, "single|double", "", "preset", "Of populations, force and velocity fields"},
     {"accuracy.membrane_precision", CORPUSCLE_FIELD(P.accuracy.membrane_precision), any, "single|double", "", "", "Of membrane forces (positions are always double)"},
     {"accuracy.vertex_update", CORPUSCLE_FIELD(P.accuracy.vertex_update), any, "averaged|chebyshev|euler", "", "", "Vertices move with a mean velocity of three steps; chebyshev: and stiff membranes relax within the step, for low Ca; euler: with the velocity of the last step"},
+    {"accuracy.coupling_every", CORPUSCLE_FIELD(P.accuracy.coupling_every), between(1, 8), "", "time steps", "",
+     "Membranes and fluid are coupled every so many steps; between, the fluid goes on with the forces of the last coupling. The length of the run and all cadences are rounded up to multiples of it"},
     {"accuracy.mach_max", CORPUSCLE_FIELD(P.accuracy.mach_max), positive(0.3), "", "", "", "Largest imposed velocity / speed of sound does not exceed this"},
     {"accuracy.shell_thickness", CORPUSCLE_FIELD(P.accuracy.shell_thickness), between(0, 2), "", "lattice units", "measured for the kernel",
      "By how much a cell is hydrodynamically larger than its mesh, for φ_eff and `cell_size`"},
@@ -163,7 +165,7 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
   if (key.name == "run.duration" || key.section() == "si") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "accuracy.shear_rate" || key.name == "output.checkpoint_strain")
     return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");
-  if (key.name == "accuracy.shear_modulus") return only_if(!problem.cells.empty(), "[[cells]]");
+  if (key.name == "accuracy.shear_modulus" || key.name == "accuracy.coupling_every") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.section() == "guards" && key.name != "guards.every" && key.name != "guards.speed" && key.name != "guards.density") {
     if (problem.cells.empty()) return only_if(false, "[[cells]]");
     if (key.name == "guards.penetration") return only_if(problem.contact.enabled, "contact.enabled = true");

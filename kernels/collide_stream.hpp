@@ -5,17 +5,27 @@
 
 namespace corpuscle {
 
-/// Where the force density of a node comes from. `none` and `uniform` need no field and no clearing pass.
-enum class Forcing { none, uniform, field };
+/// Where the force density of a node comes from, and what becomes of its fields. `none` and `uniform` need no field and no clearing pass; the others read the force field.
+enum class Forcing {
+  none,
+  uniform,
+  field,       ///< the force is cleared, the velocity written
+  held,        ///< the force stays for the next step, nobody asks for the velocity
+  held_shown,  ///< the force stays, the velocity is written
+  last         ///< the force is cleared, the velocity is the mean of this step's and the one that was there
+};
+constexpr bool reads_field(Forcing f) { return f != Forcing::none && f != Forcing::uniform; }
+constexpr bool clears_field(Forcing f) { return f == Forcing::field || f == Forcing::last; }
+constexpr bool writes_velocity(Forcing f) { return reads_field(f) && f != Forcing::held; }
 
-/// f(x + c, t + 1) = f(x, t) + collision + force (docs/theory/model.md, Fluid). With Forcing::field the node's force is read and cleared and the
-/// force-corrected velocity written, so that coupling needs no sweep of its own; the uniform force is added in both forced forms.
+/// f(x + c, t + 1) = f(x, t) + collision + force (docs/theory/model.md, Fluid). The force is read and cleared and the force-corrected velocity written on the way, so that coupling
+/// needs no sweep of its own; the uniform force is added in all forced forms.
 template <class Storage, class Compute, int Parity, Forcing forcing>
 struct CollideStream {
   StreamingAccessor<Storage, Compute, Parity> populations;
   PairRelaxation<Compute> relaxation;
   Compute uniform_force;          ///< along x
-  VectorField<Compute> force;     ///< empty unless Forcing::field
+  VectorField<Compute> force;     ///< empty unless the force field is read
   VectorField<Compute> velocity;  ///< likewise
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node) const {
@@ -23,17 +33,23 @@ struct CollideStream {
     populations.load(node, g);
     Compute fx = 0, fy = 0, fz = 0;
     if constexpr (forcing != Forcing::none) fx = uniform_force;
-    if constexpr (forcing == Forcing::field) {
+    if constexpr (reads_field(forcing)) {
       fx += force(node, 0);
       fy += force(node, 1);
       fz += force(node, 2);
+    }
+    if constexpr (clears_field(forcing)) {
       force(node, 0) = Compute(0);
       force(node, 1) = Compute(0);
       force(node, 2) = Compute(0);
       force(node, 3) = Compute(0);
     }
     const Macroscopic<Compute> m = macroscopic(g, fx, fy, fz);
-    if constexpr (forcing == Forcing::field) {
+    if constexpr (forcing == Forcing::last) {
+      velocity(node, 0) = Compute(0.5) * (velocity(node, 0) + m.u[0]);
+      velocity(node, 1) = Compute(0.5) * (velocity(node, 1) + m.u[1]);
+      velocity(node, 2) = Compute(0.5) * (velocity(node, 2) + m.u[2]);
+    } else if constexpr (writes_velocity(forcing)) {
       velocity(node, 0) = m.u[0];
       velocity(node, 1) = m.u[1];
       velocity(node, 2) = m.u[2];

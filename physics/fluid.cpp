@@ -174,16 +174,21 @@ void Fluid<Storage, Compute>::bounce_back() {
 
 template <class Storage, class Compute>
 template <int Parity>
-void Fluid<Storage, Compute>::collide_stream_parity() {
+void Fluid<Storage, Compute>::collide_stream_parity(Forcing field) {
   exchange_populations<Parity>(true);
   const auto sweep = [&](auto forcing) {
     lattice_for("collide_stream", grid_, interior(grid_),
                 CollideStream<Storage, Compute, Parity, decltype(forcing)::value>{
                     {populations_, PairOffsets(grid_)}, relaxation_, Compute(parameters_.body_force), force_, velocity_});
   };
-  if (parameters_.needs_force)
-    sweep(std::integral_constant<Forcing, Forcing::field>{});
-  else if (parameters_.body_force != 0)
+  if (parameters_.needs_force) {
+    switch (field) {
+      case Forcing::held: sweep(std::integral_constant<Forcing, Forcing::held>{}); break;
+      case Forcing::held_shown: sweep(std::integral_constant<Forcing, Forcing::held_shown>{}); break;
+      case Forcing::last: sweep(std::integral_constant<Forcing, Forcing::last>{}); break;
+      default: sweep(std::integral_constant<Forcing, Forcing::field>{});
+    }
+  } else if (parameters_.body_force != 0)
     sweep(std::integral_constant<Forcing, Forcing::uniform>{});
   else
     sweep(std::integral_constant<Forcing, Forcing::none>{});
@@ -192,12 +197,24 @@ void Fluid<Storage, Compute>::collide_stream_parity() {
 }
 
 template <class Storage, class Compute>
-void Fluid<Storage, Compute>::collide_stream() {
+void Fluid<Storage, Compute>::collide_stream_with(Forcing field) {
   if (step_ % 2 == 0)
-    collide_stream_parity<0>();
+    collide_stream_parity<0>(field);
   else
-    collide_stream_parity<1>();
+    collide_stream_parity<1>(field);
   ++step_;
+}
+
+template <class Storage, class Compute>
+void Fluid<Storage, Compute>::collide_stream() {
+  collide_stream_with(Forcing::field);
+}
+
+template <class Storage, class Compute>
+void Fluid<Storage, Compute>::collide_stream_holding_force(int steps) {
+  for (int i = 2; i < steps; ++i) collide_stream_with(Forcing::held);
+  if (steps > 1) collide_stream_with(Forcing::held_shown);
+  collide_stream_with(steps > 1 ? Forcing::last : Forcing::field);
 }
 
 template <class Storage, class Compute>

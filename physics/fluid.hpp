@@ -46,6 +46,8 @@ class Fluid {
 
   /// One step: collide and stream in place, bounce back at the walls. Reads and clears `force()`, writes `velocity()` where the scene has them.
   void collide_stream();
+  /// So many steps under the same force. With two or more `velocity()` is the mean of the last two: it doesn't see momenta that turn their sign at each step.
+  void collide_stream_holding_force(int steps);
 
   /// Prepares `force()` for the collision: adds what was spread into the halo to the nodes that it stands for. At a wall the halo is the mirror
   /// image with opposite sign (adjoint of the no-slip extension in `gather_velocity`); the difference is a force on the wall.
@@ -84,8 +86,9 @@ class Fluid {
   static std::size_t predicted_bytes(const FluidParameters& parameters);
 
  private:
+  void collide_stream_with(Forcing field);
   template <int Parity>
-  void collide_stream_parity();
+  void collide_stream_parity(Forcing field);
   template <int Parity>
   void exchange_populations(bool to_halo);
   template <int Parity>

@@ -79,7 +79,7 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
     packing_tables += membrane_tables(type, sizeof(float));
     if (problem.accuracy.vertex_update == VertexUpdate::chebyshev) m.tables += type.vertices * (1 + largest_degree) * sizeof(int);
   }
-  m.vertices = vertices * (state_of_vertex + VertexMotion::bytes_per_vertex(problem.accuracy.vertex_update)) + cells * (sample_of_cell + guard_of_cell);
+  m.vertices = vertices * (state_of_vertex + VertexMotion::bytes_per_vertex(problem.accuracy.vertex_update, lattice.coupling_every)) + cells * (sample_of_cell + guard_of_cell);
   const Grid grid{lattice.nodes[0], lattice.nodes[1], lattice.nodes[2], fluid.halo};
   m.vertices += Coupling<double>::predicted_bytes(grid, problem.accuracy.delta_kernel, vertices);
   const double skin = ContactParameters{}.skin;
@@ -93,7 +93,7 @@ MemoryEstimate predict_memory(const Problem& problem, const LatticeParameters& l
   // A snapshot: positions and velocities, and as floats positions, velocities and deformation for the file.
   if (lattice.snapshot_every > 0) m.output += host_copy * vertices * (2 * vector + 7 * sizeof(float));
   // A checkpoint: positions, velocities, and those of the two steps before.
-  checkpoint += host_copy * vertices * (problem.accuracy.vertex_update == VertexUpdate::euler ? 2 : 4) * vector;
+  checkpoint += host_copy * vertices * (VertexMotion::keeps_velocities(problem.accuracy.vertex_update, lattice.coupling_every) ? 4 : 2) * vector;
   if (problem.output.statistics && runs_on_host) {
     m.statistics = LiveStatistics::predicted_bytes(cells);
     checkpoint += 2 * m.statistics;  // as plain numbers, those of the correlators on the way

@@ -95,6 +95,7 @@ struct AccuracySpec {
   Precision precision = Precision::single_precision;            ///< populations, force and velocity fields
   Precision membrane_precision = Precision::double_precision;   ///< membrane forces (positions are always double)
   VertexUpdate vertex_update = VertexUpdate::averaged;
+  int coupling_every = 1;                    ///< time steps of the fluid for each coupling to the membranes (physics/suspension.hpp)
   double mach_max = 0.1;                     ///< wall (or maximum) velocity / speed of sound must not exceed this
   std::optional<double> shell_thickness;     ///< hydrodynamic shell around a mesh, lattice units; default: the measured one of the kernel
   CellSize cell_size = CellSize::mesh;

@@ -16,7 +16,7 @@ constexpr double hopeless = 1e4;         // growth of the jitter after which not
 constexpr double quiet = 1e-7;           // and decay
 constexpr double slowest_growth = 3e-6;  // per step: runs last up to a million steps
 // In flow, jitter relative to gamma_dot r. Resolved motion has about gamma_dot, below 1e-3. Growth counts from `suspicious` on; `drowned` is no flow any more.
-constexpr double suspicious = 0.003, drowned = 1;
+constexpr double suspicious = 0.003, drowned = 1;  // the first for each step between two couplings
 constexpr double chance = 1.1;           // growth over the last half of a probe (log 3) that resolved motion may have
 
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -25,13 +25,13 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
   return std::sqrt(sum / (double(a.size()) / 3));
 }
 
-/// Steps through one window and returns the mean jitter in it, from pairs of neighbouring steps spread over the window.
-double jitter_over(Suspension& suspension, std::int64_t steps) {
+/// Couples so many times and returns the mean jitter, from pairs of neighbouring couplings spread over this window.
+double jitter_over(Suspension& suspension, std::int64_t couplings) {
   constexpr int pairs = 8;
   double sum = 0;
   std::int64_t done = 0;
   for (int pair = 1; pair <= pairs; ++pair) {
-    const std::int64_t until = steps * pair / pairs;
+    const std::int64_t until = couplings * pair / pairs;
     for (; done < until - 1; ++done) suspension.step();
     const auto before = suspension.snapshot(false).velocities;
     suspension.step();
@@ -117,7 +117,7 @@ StabilityVerdict probe_in_flow(const Problem& problem, const LatticeParameters& 
   if (jitter.empty()) return verdict;
   const double growth = verdict.growth_rate * double(verdict.steps) / 2;
   if (jitter.back() > drowned) verdict.reason = "velocity noise above the shear velocity";
-  else if (jitter.back() > suspicious && growth > chance) verdict.reason = "velocity noise grows";
+  else if (jitter.back() > suspicious * lattice.coupling_every && growth > chance) verdict.reason = "velocity noise grows";
   else {
     verdict.stable = true;
     verdict.reason = "velocity noise stays small";

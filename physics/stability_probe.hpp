@@ -14,14 +14,14 @@ namespace corpuscle {
 /// resolved motion (gamma_dot u), of the order of u for what a time step can't resolve. Numerical instabilities show there long before anything breaks.
 struct StabilityVerdict {
   bool stable = false;
-  double growth_rate = 0;   ///< of the jitter, per step, over the last half of the probe; negative: it decays
+  double growth_rate = 0;   ///< of the jitter, per coupling, over the last half of the probe; negative: it decays
   double jitter = 0;        ///< at the end; lattice units, or relative to gamma_dot r where the scene is sheared
-  std::int64_t steps = 0;   ///< done; less than asked for where the verdict was clear before
+  std::int64_t steps = 0;   ///< couplings done, time steps unless accuracy.coupling_every > 1; less than asked for where the verdict was clear before
   std::string reason;       ///< in words
 };
 
 struct ProbeLength {
-  std::int64_t steps = 3000;  ///< long enough to see the slowest growth that matters: rates above about 2/steps are found
+  std::int64_t steps = 3000;  ///< couplings: long enough to see the slowest growth that matters: rates above about 2/steps are found
   int windows = 12;           ///< the jitter is averaged over each; growth is judged from one to the next
 };
 

@@ -36,7 +36,7 @@ ContactParameters contact_parameters(const LatticeParameters& lattice) {
   ContactParameters p;
   p.strength = lattice.contact_strength;
   p.range = lattice.contact_range;
-  p.expected_move = (lattice.mach_number > 0 ? 2 * lattice.mach_number : 0.1) * speed_of_sound;
+  p.expected_move = (lattice.mach_number > 0 ? 2 * lattice.mach_number : 0.1) * speed_of_sound * lattice.coupling_every;
   return p;
 }
 
@@ -59,7 +59,7 @@ class SuspensionOf final : public Suspension {
     if (problem.contact.enabled)
       contact_ = std::make_unique<Contact>(box, contact_parameters(lattice), cells_->cell_of_vertex());
     if (Stretching::needed(problem)) stretching_ = std::make_unique<Stretching>(problem, lattice, cells_->types());
-    motion_ = std::make_unique<VertexMotion>(cells_->types(), problem.accuracy.vertex_update, mobility());
+    motion_ = std::make_unique<VertexMotion>(cells_->types(), problem.accuracy.vertex_update, mobility(), lattice.coupling_every);
     guards_ = std::make_unique<Guards>(problem, lattice, box, cells_.get());
   }
 
@@ -149,7 +149,7 @@ class SuspensionOf final : public Suspension {
     return [this](const VertexVectors& positions, const VertexVectors& forces) { compute_forces(positions, forces); };
   }
 
-  /// The time step. With a sample, each quantity is measured at the moment when it is known, at time t = step.
+  /// The time step, or the steps up to the next coupling. With a sample, each quantity is measured at the moment when it is known, at time t = step.
   void step_with(Sample* sample) {
     if (cells_) {
       compute_forces(cells_->positions(), cells_->forces(), sample ? sampler_.get() : nullptr);
@@ -157,10 +157,10 @@ class SuspensionOf final : public Suspension {
       if (sample && problem_.box.walls) spread_on_walls_ = fluid_.wall_force_from_spreading();
       fluid_.scatter_force();
     }
-    fluid_.collide_stream();
+    fluid_.collide_stream_holding_force(lattice_.coupling_every);
     if (cells_) {
       fluid_.gather_velocity();
-      coupling_->interpolate(cells_->positions(), cells_->velocities(), fluid_.velocity());
+      coupling_->interpolate(motion_->halfway(cells_->positions(), cells_->velocities()), cells_->velocities(), fluid_.velocity());
       if (sample) sampler_->measure_shape(*cells_);
       motion_->advance(cells_->positions(), cells_->velocities(), cells_->forces(), force_operator());
     }

@@ -1,4 +1,4 @@
-// The time step of a suspension of cells, assembled from what the scene contains.
+// The time step of a suspension of cells, assembled from what the scene contains: from one coupling of membranes and fluid to the next.
 #pragma once
 #include <memory>
 
@@ -20,8 +20,9 @@ class Suspension {
   /// fraction of the contact range. Before the first step only.
   virtual void settle() = 0;
   /// One time step (docs/theory/model.md): F = -dE/dx + contact + external; f = spread F; collide and stream; u = interpolate; x += u.
+  /// With accuracy.coupling_every = k it is k time steps of the fluid under the same f: x += k u.
   virtual void step() = 0;
-  /// One time step, and what was measured at its beginning.
+  /// The same, and what was measured at its beginning.
   virtual Sample step_and_measure() = 0;
   /// Positions and velocities of all vertices now.
   virtual Snapshot snapshot(bool with_fluid) const = 0;

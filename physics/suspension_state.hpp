@@ -8,7 +8,7 @@
 
 namespace corpuscle {
 
-/// What the vertex update remembers (physics/vertex_motion.hpp). Arrays [V][3], empty with `euler`.
+/// What the vertex update remembers (physics/vertex_motion.hpp). Arrays [V][3], empty with `euler` and with coupling_every > 1.
 struct VertexMotionState {
   std::int64_t steps = 0;
   std::int64_t stages = 1;                   ///< chebyshev: of the last estimate of the stiffness

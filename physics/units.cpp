@@ -222,12 +222,15 @@ void set_duration(const Problem& problem, LatticeParameters& lattice) {
     if (n > 1e15) throw InputError(fmt::format("{} = {} is {:.3g} time steps, more than can be counted (1e15): lower it or raise the shear rate", key, value, n));
     return std::max<std::int64_t>(1, std::llround(n));
   };
+  const auto whole = [&](std::int64_t n) { return lattice.next_coupling(n); };
+  lattice.coupling_every = problem.cells.empty() ? 1 : problem.accuracy.coupling_every;
   lattice.steps = problem.run.steps ? *problem.run.steps : duration ? steps("run.duration", *duration, lattice.membrane_time) : steps("run.strain", problem.run.strain, unit);
-  lattice.series_every = steps("output.series_every", problem.output.series_every, unit);
-  lattice.snapshot_every = problem.output.snapshot_every > 0 ? steps("output.snapshot_every", problem.output.snapshot_every, unit) : 0;
+  lattice.steps = whole(lattice.steps);
+  lattice.series_every = whole(steps("output.series_every", problem.output.series_every, unit));
+  lattice.snapshot_every = problem.output.snapshot_every > 0 ? whole(steps("output.snapshot_every", problem.output.snapshot_every, unit)) : 0;
   // Absent at rest, where there is no strain.
-  if (problem.output.checkpoint_strain) lattice.checkpoint_every = steps("output.checkpoint_strain", *problem.output.checkpoint_strain, unit);
-  lattice.guard_every = problem.guards.every;
+  if (problem.output.checkpoint_strain) lattice.checkpoint_every = whole(steps("output.checkpoint_strain", *problem.output.checkpoint_strain, unit));
+  lattice.guard_every = whole(problem.guards.every);
 }
 
 }  // namespace

@@ -86,6 +86,9 @@ struct LatticeParameters {
   std::int64_t snapshot_every = 0;     ///< steps; 0: none
   std::int64_t checkpoint_every = 0;   ///< steps, from the cadence by strain; 0: none
   std::int64_t guard_every = 100;      ///< steps
+  int coupling_every = 1;              ///< steps; the length and the cadences above are multiples of it: nothing is measured, kept or ended between two couplings
+  /// The next step at which membranes and fluid are coupled.
+  std::int64_t next_coupling(std::int64_t step) const { return (step + coupling_every - 1) / coupling_every * coupling_every; }
   std::vector<CellTypeLattice> cells;
   std::vector<ShearRateLimit> limits;  ///< all limits, the deciding (smallest) one first
   std::vector<StabilityMargin> margins;

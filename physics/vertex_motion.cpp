@@ -134,14 +134,16 @@ MobilityModel mobility_model(const std::vector<CellType>& types, int delta_kerne
   return {5 * density * overlap, delta_kernel == 2 ? 0.4 : 0.6};
 }
 
-VertexMotion::VertexMotion(const std::vector<CellType>& types, VertexUpdate update, const MobilityModel& mobility) : update_(update) {
-  if (update_ == VertexUpdate::euler) return;
+VertexMotion::VertexMotion(const std::vector<CellType>& types, VertexUpdate update, const MobilityModel& mobility, int interval) : update_(update), interval_(interval) {
   std::size_t vertex_count = 0;
   for (const auto& type : types) vertex_count += std::size_t(type.count) * type.vertices();
-  before_ = vectors("previous_velocities", vertex_count);
-  before_that_ = vectors("velocities_before", vertex_count);
+  if (keeps_velocities(update, interval)) {
+    before_ = vectors("previous_velocities", vertex_count);
+    before_that_ = vectors("velocities_before", vertex_count);
+  }
+  if (interval > 1) halfway_ = vectors("halfway_positions", vertex_count);
   if (update_ != VertexUpdate::chebyshev) return;
-  for (const auto& type : types) mobilities_.push_back(surface_mobility(type, mobility));
+  for (const auto& type : types) mobilities_.push_back(surface_mobility(type, {mobility.mobility * interval, mobility.smoothing}));
   drift_ = vectors("chebyshev_drift", vertex_count);
   start_forces_ = vectors("chebyshev_forces", vertex_count);
   last_ = vectors("chebyshev_last", vertex_count);
@@ -149,13 +151,13 @@ VertexMotion::VertexMotion(const std::vector<CellType>& types, VertexUpdate upda
 }
 
 std::size_t VertexMotion::bytes() const {
-  std::size_t total = (before_.span() + before_that_.span() + drift_.span() + start_forces_.span() + last_.span() + smoothed_.span()) * sizeof(double);
+  std::size_t total = (halfway_.span() + before_.span() + before_that_.span() + drift_.span() + start_forces_.span() + last_.span() + smoothed_.span()) * sizeof(double);
   for (const auto& type : mobilities_) total += (type.degree.span() + type.neighbour.span()) * sizeof(int);
   return total;
 }
 
-std::size_t VertexMotion::bytes_per_vertex(VertexUpdate update) {
-  const int vectors_kept = update == VertexUpdate::euler ? 0 : update == VertexUpdate::averaged ? 2 : 6;
+std::size_t VertexMotion::bytes_per_vertex(VertexUpdate update, int interval) {
+  const int vectors_kept = (keeps_velocities(update, interval) ? 2 : 0) + (interval > 1 ? 1 : 0) + (update == VertexUpdate::chebyshev ? 4 : 0);
   return std::size_t(vectors_kept) * 3 * sizeof(double);
 }
 
@@ -164,38 +166,52 @@ VertexMotionState VertexMotion::state() const { return {steps_, stages(), to_hos
 void VertexMotion::restore(const VertexMotionState& state) {
   steps_ = state.steps;
   scheme_ = ChebyshevScheme(int(state.stages));
-  if (update_ == VertexUpdate::euler) return;
+  if (before_.extent(0) == 0) return;
   Kokkos::deep_copy(before_, to_device(state.before));
   Kokkos::deep_copy(before_that_, to_device(state.before_that));
+}
+
+VertexVectors VertexMotion::halfway(const VertexVectors& positions, const VertexVectors& velocities_before) {
+  if (interval_ == 1) return positions;
+  const auto x = positions, u = velocities_before, there = halfway_;
+  const double steps = 0.5 * interval_;
+  Kokkos::parallel_for("halfway", Range(0, x.extent(0)), KOKKOS_LAMBDA(const int v) {
+    for (int k = 0; k < 3; ++k) there(v, k) = x(v, k) + steps * u(v, k);
+  });
+  return there;
 }
 
 void VertexMotion::advance(const VertexVectors& positions, const VertexVectors& velocities, const VertexVectors& forces, const ForceOperator& compute_forces) {
   const auto x = positions, u = velocities, f = forces;
   const Range all(0, x.extent(0));
-  if (update_ == VertexUpdate::euler) {
+  const double steps = interval_;
+  const bool averages = before_.extent(0) > 0, relaxes = update_ == VertexUpdate::chebyshev;
+  if (!averages && !relaxes) {
     Kokkos::parallel_for("advance", all, KOKKOS_LAMBDA(const int v) {
-      for (int k = 0; k < 3; ++k) x(v, k) += u(v, k);
+      for (int k = 0; k < 3; ++k) x(v, k) += steps * u(v, k);
     });
     return;
   }
-  if (steps_ == 0) {
+  if (averages && steps_ == 0) {
     Kokkos::deep_copy(before_, u);
     Kokkos::deep_copy(before_that_, u);
   }
   const auto u1 = before_, u2 = before_that_;
-  const bool relaxes = update_ == VertexUpdate::chebyshev;
   if (relaxes && steps_ % estimate_every == 0) scheme_ = scheme_for(largest_rate(mobilities_, x, f, drift_, last_, start_forces_, compute_forces));
   const auto w = drift_, f0 = start_forces_;
   Kokkos::parallel_for("advance", all, KOKKOS_LAMBDA(const int v) {
     for (int k = 0; k < 3; ++k) {
-      const double mean = 0.75 * u(v, k) + 0.5 * u1(v, k) - 0.25 * u2(v, k);
-      u2(v, k) = u1(v, k);
-      u1(v, k) = u(v, k);
+      double mean = u(v, k);
+      if (averages) {
+        mean = 0.75 * u(v, k) + 0.5 * u1(v, k) - 0.25 * u2(v, k);
+        u2(v, k) = u1(v, k);
+        u1(v, k) = u(v, k);
+      }
       if (relaxes) {
-        w(v, k) = mean;
+        w(v, k) = steps * mean;
         f0(v, k) = f(v, k);
       } else {
-        x(v, k) += mean;
+        x(v, k) += steps * mean;
       }
     }
   });

@@ -26,10 +26,10 @@ COLOURS = {2: "#D55E00", 3: "#0072B2", 4: "#009E73"}  # Okabe and Ito's palette
 MARKERS = {2: "s", 3: "o", 4: "^"}
 INK = "#222222"
 NAMES = {"red_cell": "κ_S of a red cell", "kappa_S": "κ_S alone", "kappa_alpha": "κ_α alone", "kappa_B": "κ_B", "kappa_A": "κ_A", "kappa_V": "κ_V", "contact": "κ_int",
-         "phi_eff": "κ_S of a red cell", "precision": "κ_S of a red cell", "Ca": "Ca", "Mach": "Ma", "tau": "τ"}
+         "phi_eff": "κ_S of a red cell", "coupling": "κ_S of a red cell", "precision": "κ_S of a red cell", "Ca": "Ca", "Mach": "Ma", "tau": "τ"}
 UNITS = {"eta_0": "η₀", "c_s": "", "response": "", "": ""}
 SECTIONS = [
-    ("How stiff a membrane may be in dense flow", ["red_cell", "kappa_S", "kappa_alpha", "phi_eff", "precision"], "in flow"),
+    ("How stiff a membrane may be in dense flow", ["red_cell", "kappa_S", "kappa_alpha", "phi_eff", "coupling", "precision"], "in flow"),
     ("Bending, global terms, contact in dense flow", ["kappa_B", "kappa_A", "kappa_V", "contact"], "in flow"),
     ("One cell at rest: kernel, update, mesh edge", ["red_cell", "kappa_S", "kappa_alpha", "kappa_B", "kappa_A", "kappa_V"], "at rest"),
     ("Fluid, relaxation time, capillary number", ["tau", "Mach", "Ca"], None),

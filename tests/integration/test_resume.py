@@ -50,6 +50,37 @@ def check_extension(program, folder):
     return folder / "averaged-once"
 
 
+def check_coupling_interval(program, folder):
+    """Coupled every third step: a length of 151 steps means 153, cadences are multiples of 3, and a run that stops in between stops at a coupling."""
+    scene = folder / "interval.toml"
+    scene.write_text(SCENE.format(steps=302, checkpoint_steps=100).replace("radius = 4", "radius = 4\ncoupling_every = 3"))
+    once, twice = folder / "interval-once", folder / "interval-twice"
+    command(program, "run", scene, "--output", once, "--threads", 1, "--set", "run.discard=0")
+    command(program, "run", scene, "--output", twice, "--threads", 2, "--set", "run.steps=151", "--set", "run.discard=0")
+    with h5py.File(twice / "run.h5") as file:
+        lattice = file["lattice"].attrs
+        assert lattice["coupling_every"] == 3 and lattice["steps"] == 153, dict(lattice)
+        assert lattice["series_every"] % 3 == 0 and lattice["snapshot_every"] % 3 == 0, dict(lattice)
+        assert (file["series/step"][:] % 3 == 0).all() and file["series/step"][-1] == 153
+    log = command(program, "resume", twice, "--threads", 1, "--until", "steps=302").stdout
+    assert "going on at step 153 of 303" in log, log
+    check_equal(once, twice, "coupled every third step, 153 + 150 steps")
+    endless, output, whole = folder / "endless.toml", folder / "interval-stopped", folder / "interval-whole"
+    endless.write_text(scene.read_text().replace("steps = 302", "steps = 200000\ndiscard = 0"))
+    process = start(program, endless, output)
+    time.sleep(0.5)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(timeout=60) == 130
+    process.stderr.close()
+    stopped = json.loads((output / "summary.json").read_text())["steps"]
+    assert 0 <= stopped < 200000 and stopped % 3 == 0, stopped
+    length = max(stopped + 30, 150)  # live statistics want some samples
+    log = command(program, "resume", output, "--until", f"steps={length}").stdout
+    assert f"going on at step {stopped} of {length}" in log, log
+    command(program, "run", endless, "--output", whole, "--set", f"run.steps={length}", "--threads", 1)
+    check_equal(whole, output, f"coupled every third step, stopped by a signal at step {stopped}")
+
+
 def check_damage(program, folder, reference):
     """A newest checkpoint that is damaged: the one before is taken, with a note. Both damaged: refused, nothing is changed."""
     output = folder / "damaged"
@@ -130,6 +161,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         once = check_extension(program, folder)
+        check_coupling_interval(program, folder)
         check_damage(program, folder, once)
         check_guard(program, folder, once)
         (folder / "kills.toml").write_text(SCENE.format(steps=STEPS, checkpoint_steps=41))

@@ -122,6 +122,30 @@ TEST_CASE("Chosen settings stay within the margin for every kernel, update and r
       }
 }
 
+TEST_CASE("What is coupled every k-th step has limits k times lower; settings are chosen within them, and what lies beyond is refused", "[stability]") {
+  Problem problem = red_cells();
+  const LatticeParameters at_every_step = to_lattice(problem);
+  REQUIRE(at_every_step.limits.front().name == "membrane stability");
+  const StiffnessLimits one = stiffness_limits(problem.accuracy, 0.3);
+  const double response = stable_response(problem.accuracy), stable_modulus = modulus_at(problem, 0.9);
+  for (const int interval : {2, 3, 8}) {
+    INFO("coupled every " << interval << " steps");
+    problem.accuracy.shear_modulus.reset();
+    problem.accuracy.coupling_every = interval;
+    const StiffnessLimits limits = stiffness_limits(problem.accuracy, 0.3);
+    CHECK(limits.shear == Approx(one.shear / interval));
+    CHECK(limits.bending == Approx(one.bending / interval));
+    CHECK(limits.contact == Approx(one.contact / interval));
+    CHECK(stable_response(problem.accuracy) == Approx(response / interval));
+    const LatticeParameters lattice = to_lattice(problem);
+    CHECK(lattice.shear_rate == Approx(at_every_step.shear_rate / interval));
+    CHECK(lattice.warnings.empty());
+    for (const auto& margin : lattice.margins) CHECK(margin.value <= stability_margin * margin.limit * (1 + 1e-9));
+    problem.accuracy.shear_modulus = stable_modulus;  // of a coupling at every step
+    CHECK(complaint_lacks([&] { to_lattice(problem); }, {"unstable", "must be <= "}) == "");
+  }
+}
+
 TEST_CASE("Mean square curvature and mean edge of a sphere", "[stability]") {
   // (2H)^2 = 4/r^2. The discrete sum is exact for a regular mesh up to the spread of vertex areas: (max/min)^1/2 of a geodesic sphere is 1.2, its variance 1 %.
   const Mesh sphere = sphere_mesh(5, 8);

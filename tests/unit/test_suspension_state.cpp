@@ -60,6 +60,23 @@ TEST_CASE("A suspension goes on bit for bit from its state, at odd and even step
       }
 }
 
+TEST_CASE("A suspension that is coupled every third step goes on bit for bit from its state, at odd and even steps", "[suspension][checkpoint]") {
+  for (const char* update : {"averaged", "chebyshev"})
+    for (const int couplings : {0, 1, 22}) {
+      INFO(update << ", " << couplings << " couplings");
+      const std::string scene = sheared + "[accuracy]\nradius = 4\ncoupling_every = 3\nvertex_update = '" + update + "'\n[run]\nsteps = 200\n";
+      auto without_pause = start(scene);
+      for (int i = 0; i < couplings; ++i) without_pause.suspension->step();
+      CHECK(without_pause.suspension->state().step == 3 * couplings);
+      auto resumed = go_on_elsewhere(scene, *without_pause.suspension);
+      for (int i = 0; i < 23; ++i) {
+        without_pause.suspension->step();
+        resumed.suspension->step();
+      }
+      check_equal(*without_pause.suspension, *resumed.suspension);
+    }
+}
+
 TEST_CASE("A fluid without walls, a channel flow and a cell that is stretched go on bit for bit", "[suspension][checkpoint]") {
   for (const char* scene :
        {"[box]\nsize = [2, 2, 4]\n[flow]\nkind = 'poiseuille'\n[accuracy]\nradius = 5\n[run]\nstrain = 1\n",
