@@ -118,7 +118,7 @@ int resume(const ResumeOptions& options) {
     checkpoints.forget_last();
     checkpoints.write(*suspension, outputs, series, statistics, from.state.step, from.seconds);
   }
-  return run_to_end({directory, lattice, *suspension, outputs, series, statistics, checkpoints, from.state.step, from.seconds, wall_time, options.profile});
+  return run_to_end({directory, problem, lattice, *suspension, outputs, series, statistics, checkpoints, from.state.step, from.seconds, wall_time, options.profile});
 }
 
 }  // namespace corpuscle::app

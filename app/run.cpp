@@ -122,7 +122,7 @@ int run(const RunOptions& options) {
   }
   replaced->discard();
   packing.positions = {};
-  return run_to_end({directory, lattice, *suspension, *created, series, statistics, checkpoints, 0, 0, wall_time, options.profile});
+  return run_to_end({directory, problem, lattice, *suspension, *created, series, statistics, checkpoints, 0, 0, wall_time, options.profile});
 }
 
 }  // namespace corpuscle::app

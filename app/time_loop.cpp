@@ -19,6 +19,7 @@
 #include "io/progress.hpp"
 #include "io/scene.hpp"
 #include "physics/analysis/live.hpp"
+#include "physics/resolution_error.hpp"
 
 namespace corpuscle::app {
 
@@ -194,6 +195,8 @@ std::string result_line(const Summary& s, const std::filesystem::path& directory
     if (std::isfinite(s.relative_viscosity.error)) text += fmt::format(" +- {:.4f}", s.relative_viscosity.error);
     if (s.cell_count > 0 && !s.converged) text += " (not converged: the averaged part is shorter than 20 correlation times)";
   }
+  if (std::isfinite(s.viscosity_resolution_error))
+    text += fmt::format("; the resolution makes it {:+.0f} +- {:.0f} % off", 100 * s.viscosity_resolution_error, 100 * s.viscosity_resolution_error_uncertainty);
   return text + fmt::format("; results in {}", directory.string());
 }
 

@@ -46,6 +46,7 @@ std::optional<LiveStatistics> live_statistics(const Problem& problem, const Latt
 /// A run that is ready to go on, at a step that the suspension is at.
 struct ReadyRun {
   const std::filesystem::path& directory;
+  const Problem& problem;
   const LatticeParameters& lattice;
   Suspension& suspension;
   Outputs& outputs;
