@@ -1,14 +1,14 @@
 #pragma once
 // Checks what a refusal tells the user; the same with Catch2 2 and 3, whose substring matchers have different names.
-#include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 
 /// Runs `action`, which must throw InputError with a message that contains all `words`. Empty when so, else what happened:
 /// CHECK(complaint_lacks([&] { read_off(path, 1); }, {"line 3", "finite"}) == "");
 template <class Action>
-std::string complaint_lacks(const Action& action, std::initializer_list<const char*> words) {
+std::string complaint_lacks(const Action& action, const std::vector<const char*>& words) {
   try {
     action();
   } catch (const corpuscle::InputError& error) {

@@ -89,7 +89,7 @@ def check_packing_reuse(program, folder, scene):
 def check_interrupt(program, folder, scene):
     for name in ("SIGINT", "SIGTERM"):
         output = folder / name
-        process = subprocess.Popen([program, "run", scene, "--output", output, "--set", "run.strain=10000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = subprocess.Popen([program, "run", scene, "--output", output, "--set", "run.strain=10000", "--set", "output.series_every=0.002"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         for _ in range(600):
             if (output / "run.h5").exists():
                 break

@@ -107,7 +107,7 @@ TEST_CASE("sweep: names have what varies, are fit for files, and tell keys apart
 TEST_CASE("sweep: what is wrong is told with its line", "[sweep]") {
   struct Bad {
     std::string text;
-    std::initializer_list<const char*> words;
+    std::vector<const char*> words;
   };
   const std::string scene = "scene = \"s.toml\"\n", axis = "[[axis]]\nkey = \"run.seed\"\n";
   const std::vector<Bad> bad{
