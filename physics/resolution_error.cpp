@@ -22,7 +22,7 @@ struct Value {
 /// Linear in `x` between two measured values.
 Value between(double x, double x0, const Value& a, double x1, const Value& b) {
   const double t = x1 == x0 ? 0 : (x - x0) / (x1 - x0);
-  return {(1 - t) * a.value + t * b.value, std::max(a.uncertainty, b.uncertainty)};
+  return {(1 - t) * a.value + t * b.value, (1 - t) * a.uncertainty + t * b.uncertainty};
 }
 
 /// Along the radius. Beyond the finest one a deviation falls as 1/radius at least.
