@@ -13,7 +13,9 @@ namespace {
 constexpr double described = 0.01;          // of a family's range that two terms miss
 constexpr double least_relative_error = 1e-6;
 constexpr double largest_misfit = 2;        // chi2 per degree of freedom of a family's fit
-constexpr double beyond = 0.2;              // of the way from the finest value to the limit that an extrapolation is uncertain by: Roache's safety factor of 1.25 is that much above 1
+// Of the way from the finest value to the limit that an extrapolation is uncertain by. With two terms Roache's safety factor of 1.25, which is that much above 1; with one the order isn't known: between 1
+// and 1.5 it changes the way by half.
+constexpr double beyond = 0.25, beyond_one_term = 0.5;
 constexpr double contradiction = 4;         // the same of the families about their mean
 constexpr double uncertain = 0.05;          // of the limit
 
@@ -92,7 +94,7 @@ FamilyLimit limit_of(std::vector<ResolvedValue> values) {
   result = {{.value = found.limit, .effective_samples = double(found.points), .converged = true}, from, found.first, found.second, found.error, std::abs(finer.limit - found.limit)};
   const auto finest = std::max_element(values.begin(), values.end(), [](const ResolvedValue& a, const ResolvedValue& b) { return a.resolution < b.resolution; });
   const double r = finest->resolution, way = std::abs(found.first / r + found.second / (r * r));
-  result.model_error = std::hypot(std::isnan(result.model_error) ? 0 : result.model_error, beyond * way);
+  result.model_error = std::hypot(std::isnan(result.model_error) ? 0 : result.model_error, (found.terms > 1 ? beyond : beyond_one_term) * way);
   result.limit.error = std::hypot(result.statistical_error, result.model_error);
   return result;
 }
