@@ -1,6 +1,7 @@
 #include "io/scene_toml.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -267,6 +268,17 @@ std::string shown(const toml::node& node) {
   std::ostringstream out;
   node.visit([&](const auto& value) { out << value; });
   return one_line(out.str());
+}
+
+void refuse(const std::string& origin, const toml::node& node, const std::string& problem) {
+  const auto line = node.source().begin.line;
+  throw InputError(line == 0 ? fmt::format("{}: {}", origin, problem) : fmt::format("{}:{}: {}", origin, line, problem));
+}
+
+void allow_only(const std::string& origin, const toml::table& table, std::span<const std::string_view> known, const char* of) {
+  for (const auto& [name, node] : table)
+    if (std::find(known.begin(), known.end(), name.str()) == known.end())
+      refuse(origin, node, fmt::format("{} isn't a key of {}; allowed: {}; the nearest is {}", one_line(name.str()), of, fmt::join(known, ", "), nearest(name.str(), known)));
 }
 
 std::string pattern_of(std::string_view path) {

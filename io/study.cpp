@@ -57,15 +57,8 @@ class StudyReader {
   }
 
  private:
-  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const {
-    const auto line = node.source().begin.line;
-    throw InputError(line == 0 ? fmt::format("{}: {}", origin_, problem) : fmt::format("{}:{}: {}", origin_, line, problem));
-  }
-  void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const {
-    for (const auto& [name, node] : table)
-      if (std::find(known.begin(), known.end(), name.str()) == known.end())
-        fail(node, fmt::format("{} isn't a key of {}; allowed: {}; the nearest is {}", one_line(name.str()), of, fmt::join(known, ", "), scene::nearest(name.str(), known)));
-  }
+  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { scene::refuse(origin_, node, problem); }
+  void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const { scene::allow_only(origin_, table, known, of); }
   std::optional<double> number(const toml::table& table, const char* key) const {
     const toml::node* node = table.get(key);
     if (node == nullptr) return {};

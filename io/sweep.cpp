@@ -74,16 +74,12 @@ class SweepReader {
   }
 
  private:
-  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { fail(node.source().begin.line, problem); }
+  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { scene::refuse(origin_, node, problem); }
   [[noreturn]] void fail(std::ptrdiff_t line, const std::string& problem) const {
     throw InputError(line == 0 ? fmt::format("{}: {}", origin_, problem) : fmt::format("{}:{}: {}", origin_, line, problem));
   }
 
-  void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const {
-    for (const auto& [name, node] : table)
-      if (std::find(known.begin(), known.end(), name.str()) == known.end())
-        fail(node, fmt::format("{} isn't a key of {}; allowed: {}; the nearest is {}", one_line(name.str()), of, fmt::join(known, ", "), scene::nearest(name.str(), known)));
-  }
+  void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const { scene::allow_only(origin_, table, known, of); }
 
   std::vector<const toml::table*> tables(const char* name) const {
     std::vector<const toml::table*> found;
