@@ -90,10 +90,7 @@ def front(study, tally):
             hollow = not study.is_otherwise_base(point["settings"])
             axes.errorbar(cost, max(size, 0.04), yerr=[[min(error, 0.95 * max(size, 0.04))], [error]], color=colour, marker=symbol, linestyle="none", markersize=4, elinewidth=0.5,
                           markerfacecolor="white" if hollow else colour, zorder=3)
-            label = point["settings"].get(study.along) if study.along and not hollow else None
-            if hollow:
-                changed = [k for k in study.knobs if k not in (study.along, study.by_colour, study.by_symbol) and point["settings"][k] != study.base[k]]
-                label = ", ".join(f"{short(k)} {point['settings'][k]}" for k in changed)
+            label = point["settings"].get(study.along) if study.along and not hollow else None  # those of other knobs lie too close: the tables have them
             if label:
                 axes.annotate(label, (cost, max(size, 0.04)), textcoords="offset points", xytext=(3, 2), fontsize=5, color=GREY)
         drawn += len(rows)
@@ -105,11 +102,12 @@ def front(study, tally):
             axes.step([b[0] for b in best] + [max(row[0] for row in rows)], [b[1] for b in best] + [best[-1][1]], where="post", color=INK, linewidth=0.8, zorder=1)
         for target in (15, 5, 2):
             axes.axhline(target, color=GREY, linewidth=0.5, linestyle=":")
-        axes.set(xscale="log", yscale="log", ylim=(0.03, None), xlabel="core seconds per strain", title=panel.replace("_", " "))
+        axes.set(xscale="log", yscale="log", xlabel="core seconds per strain", title=panel.replace("_", " "))
     if not drawn:
         plt.close(figure)
         raise Missing("no point has both a deviation and a cost")
     grid[0][0].set_ylabel("deviation from the reference (%)")
+    grid[0][0].set_ylim(bottom=0.03)
     figure.legend(handles=study.keys(), loc="outside lower center", ncols=6)
     reference = ", ".join(f"{name} {number(r['value']):.4g} ± {number(r['error']):.2g}" for name, r in study.data["reference"].items())
     labels = f" Labels: {short(study.along)}." if study.along else ""
