@@ -27,9 +27,10 @@ class Study:
         self.points = data["points"]
         self.warnings = list(data.get("warnings") or [])
         # The knob of the resolution labels the points; others give colour and symbol, those with most settings first.
-        numbers = [k for k in self.knobs if len({p["settings"][k] for p in self.points}) > 3 and all(is_number(p["settings"][k]) for p in self.points)]
+        numbers = [k for k in self.knobs if all(is_number(p["settings"][k]) for p in self.points)]
         extrapolated = [k for k in numbers if any(k not in f["settings"] for r in data["reference"].values() for f in r.get("families", []))]
-        self.along = (extrapolated or numbers or [None])[0]
+        many = [k for k in numbers if len({p["settings"][k] for p in self.points}) > 3]
+        self.along = (extrapolated or many or [None])[0]
         rest = [k for k in self.knobs if k != self.along]
         # Those that more points change first: a knob of [[also]] is changed by few.
         rest.sort(key=lambda k: -sum(p["settings"][k] != self.base[k] for p in self.points))

@@ -104,6 +104,12 @@ def test_study():
     rows = list(csv.DictReader((work / "out/tradeoff.csv").open()))
     expect(len(rows) == 7 and {r["name"] for r in rows if r["on_front"] == "1"} == set(front), "the table has the same front")
 
+    drawn = subprocess.run([sys.executable, source / "report/report.py", work / "out", "--dpi", "60", "--no-pdf"], capture_output=True, text=True)
+    expect(drawn.returncode == 0, f"the report ends with {drawn.returncode}: {drawn.stderr}")
+    html = (work / "out/report/index.html").read_text()
+    for name in ("front", "convergence"):
+        expect((work / f"out/report/{name}.png").stat().st_size > 3000 and f'id="{name}"' in html, f"{name} is drawn and in the page")
+
     # The same command finds everything done; a value that is added is run alone.
     before = {name: (work / "out" / name / "run.h5").stat().st_mtime_ns for name in cost}
     expect("all 6 points are through" in tradeoff(study).stdout, "nothing is left")
