@@ -13,6 +13,8 @@
 namespace corpuscle {
 namespace {
 
+constexpr double slow = 0.1;  // speed of a fluid far from instability, lattice units
+
 template <class T>
 Array1<T> on_device(const std::vector<T>& host, const std::string& label) {
   const Array1<T> view(label, host.size());
@@ -246,11 +248,15 @@ void Guards::stop_for_fluid(const NodeState& node, std::int64_t step, std::int64
   const bool density = !(std::abs(node.density - 1) <= spec_.density);
   const auto shown = [](double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("not a number"); };
   const double position[3] = {node.node[0] + 0.5, node.node[1] + 0.5, node.node[2] + 0.5};
+  // A slow fluid isn't unstable: pressures between crowded cells compress it. At one Reynolds number stresses are (tau - 1/2)^2 in lattice units, and so is the density (docs/accuracy.md).
+  const bool compressed = density && std::isfinite(node.density) && node.speed < slow && states_.extent(0) > 0;
+  const std::string cause = compressed ? "the stresses of the cells compress the fluid: lower accuracy.relaxation_time (the density varies as (tau - 1/2)^2) or flow.reynolds_number_max, or give the cells more room"
+                            : density  ? "the flow is too fast or its viscosity too low for a stable fluid: lower accuracy.mach_max or flow.reynolds_number_max, or move accuracy.relaxation_time away from 0.5"
+                                       : "the flow is too fast for the lattice: lower accuracy.mach_max or flow.reynolds_number_max, or move accuracy.relaxation_time away from 0.5";
   throw SimulationError(opening(step, "the fluid") +
                         fmt::format("{} nodes are beyond a limit, the first one {}, where the density is {} and the speed in lattice units {}; the limits are 1 +- {:g} "
-                                    "(guards.density) and {:g} (guards.speed). Likely {}: lower accuracy.mach_max or flow.reynolds_number_max, or move accuracy.relaxation_time away from 0.5.",
-                                    broken_nodes, place(position), shown(node.density), shown(node.speed), spec_.density, spec_.speed,
-                                    density ? "the flow is too fast or its viscosity too low for a stable fluid" : "the flow is too fast for the lattice"));
+                                    "(guards.density) and {:g} (guards.speed). Likely {}.",
+                                    broken_nodes, place(position), shown(node.density), shown(node.speed), spec_.density, spec_.speed, cause));
 }
 
 std::size_t Guards::bytes() const { return tables_.bytes() + centres_.span() * sizeof(double) + states_.span() * sizeof(CellState); }

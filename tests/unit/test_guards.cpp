@@ -268,7 +268,7 @@ TEST_CASE("Guards find a node of the fluid that is not a number, too fast, too d
   push(dense, 7, 3, 4, 0.05);
   push(dense, 9, 3, 4, -0.05);
   dense.fluid.collide_stream();
-  check_names(dense.message(false), "the fluid", "the limits are 1 +- 0.01 (guards.density)", "flow.reynolds_number_max");
+  check_names(dense.message(false), "the fluid", "the limits are 1 +- 0.01 (guards.density)", "stresses of the cells compress the fluid: lower accuracy.relaxation_time");
   Guarded same(two_spheres());
   push(same, 7, 3, 4, 0.05);
   push(same, 9, 3, 4, -0.05);
