@@ -34,7 +34,7 @@ void extrapolate(StudyResult& result) {
     const int number = static_cast<int>(found - result.families.begin());
     for (std::size_t o = 0; o < study.observables.size(); ++o) {
       const Estimate& e = p.observed[o];
-      values[o].push_back({tradeoff::number_of(p.settings[along]), number, e.value, std::isnan(e.error) ? 0 : e.error});
+      values[o].push_back({tradeoff::number_of(p.settings[along]), number, e.value, e.error});  // one without an error is left out
     }
   }
   for (std::size_t o = 0; o < study.observables.size(); ++o) {

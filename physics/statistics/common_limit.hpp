@@ -33,7 +33,7 @@ struct CommonLimit {
 /// doesn't hold, are left out one by one until chi2 is below two per degree of freedom (Richardson 1911; Roache, J. Fluids Eng. 116, 1994). The error of a family's limit is the statistical one and
 /// the model's, together: the change of the limit when the coarsest resolution is left out, and a quarter of the way from the finest resolution to the limit, half of it with one term (noise can hide that a series bends); so families far from their limit say little. Points count with their errors, and with a hundredth of
 /// the family's range where that is more. The limit is the mean of the families, weighted with their errors; its error grows where they scatter more than those allow.
-/// A family takes part with three or more resolutions; points that are not finite are left out. Not converged: no family can be checked, they contradict each other (chi2 above four per degree of
+/// A family takes part with three or more resolutions; points whose value or error is not finite are left out. Not converged: no family can be checked, they contradict each other (chi2 above four per degree of
 /// freedom), or the error is beyond 5 %.
 CommonLimit common_limit(const std::vector<ResolvedValue>& values);
 
