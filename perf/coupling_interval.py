@@ -11,9 +11,10 @@ table start from one packing.
 import json
 import os
 import resource
-import subprocess
 import sys
 import tempfile
+
+from run_scene import run_scene
 
 CAPSULE = """
 [box]
@@ -80,19 +81,12 @@ RATE = 0.1 / 6 / 25  # Re = 0.1 at r = 5, tau = 1
 
 def run(program, folder, scene, settings):
     """summary.json of a run and the seconds of processor time that it took."""
-    path = os.path.join(folder, "scene.toml")
-    with open(path, "w") as file:
-        file.write(scene)
-    output = os.path.join(folder, "run")
-    command = [program, "run", path, "--output", output, "--overwrite", "--threads", "1"]
-    for key, value in settings.items():
-        command += ["--set", f"{key}={value}"]
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    result = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1", "OMP_PROC_BIND": "false"})
+    result = run_scene(program, folder, scene, settings)
     seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     if result.returncode != 0:
         sys.exit(result.stderr.strip())
-    with open(os.path.join(output, "summary.json")) as file:
+    with open(os.path.join(folder, "run", "summary.json")) as file:
         return json.load(file), seconds
 
 

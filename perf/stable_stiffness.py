@@ -6,10 +6,10 @@ usage: perf/stable_stiffness.py PROGRAM        PROGRAM is bin/corpuscle; prints 
 One neo-Hookean capsule (r = 5, no bending) in the middle of a channel of 6 x 6 x 6 r, sheared for 3000 steps at a rate of 0.0015 a step; unstable means that a guard stopped the run.
 """
 
-import os
-import subprocess
 import sys
 import tempfile
+
+from run_scene import run_scene
 
 SCENE = """
 [box]
@@ -42,11 +42,7 @@ membrane = {{ law = "neo_hookean", bending = 0.0 }}
 
 
 def stable(program, folder, stiffness, **settings):
-    scene = os.path.join(folder, "scene.toml")
-    with open(scene, "w") as file:
-        file.write(SCENE.format(ca=3 * 0.0015 * 5 / stiffness, **settings))
-    command = [program, "run", scene, "--output", os.path.join(folder, "run"), "--overwrite", "--threads", "1"]
-    result = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1", "OMP_PROC_BIND": "false"})
+    result = run_scene(program, folder, SCENE.format(ca=3 * 0.0015 * 5 / stiffness, **settings))
     if result.returncode not in (0, 3):
         sys.exit(result.stderr.strip())
     return result.returncode == 0
