@@ -61,9 +61,7 @@ double search_seconds(const LatticeParameters& lattice, const Cells& cells) {
 }  // namespace
 
 double Calibration::seconds_per_step(const LatticeParameters& lattice) const {
-  double vertices = 0;
-  for (const auto& type : lattice.cells) vertices += double(type.count * type.vertices);
-  return per_node * lattice.box_volume() + (per_vertex / lattice.coupling_every + per_vertex_sampled / double(lattice.series_every)) * vertices;
+  return per_node * lattice.box_volume() + (per_vertex / lattice.coupling_every + per_vertex_sampled / double(lattice.series_every)) * double(lattice.vertices());
 }
 
 Calibration calibrate(const Problem& problem, const LatticeParameters& lattice) {

@@ -44,9 +44,7 @@ std::vector<DispensableModel> not_needed(const Problem& problem, const LatticePa
   return dispensable_models(problem, lattice, step > 0 ? std::max(0.0, 1 - c.per_node * lattice.box_volume() / step) : 0);
 }
 
-/// NaN becomes null.
-nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
-
+/// NaN becomes null when it is written.
 nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, const Calibration& c) {
   nlohmann::json j;
   j["nodes"] = l.nodes;
@@ -96,7 +94,7 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const
                           {"stretching_force", t.stretching_force}});
   j["models"] = active_models(problem, l);
   const ResolutionError resolution = viscosity_resolution_error(problem, l);
-  j["viscosity_resolution_error"] = {{"value", number(resolution.value)}, {"uncertainty", number(resolution.uncertainty)}, {"reason", resolution.reason}};
+  j["viscosity_resolution_error"] = {{"value", resolution.value}, {"uncertainty", resolution.uncertainty}, {"reason", resolution.reason}};
   j["not_needed"] = nlohmann::json::array();
   for (const auto& m : not_needed(problem, l, c))
     j["not_needed"].push_back({{"model", m.model},
@@ -151,11 +149,9 @@ void print(const Problem& problem, const LatticeParameters& l, const MemoryEstim
     const auto& m = l.margins[i];
     fmt::print("{}{}: {:.3g}, stable up to {:.3g} ({:.0f} %)\n", i == 0 ? "Stability   " : "            ", m.name, m.value, m.limit, 100 * m.value / m.limit);
   }
-  std::int64_t vertices = 0;
   for (const auto& t : l.cells) {
     fmt::print("Cells       {} x {}: r = {:g}, {} vertices, {} faces, kappa_S = {:.4g}, kappa_alpha = {:.4g}, kappa_B = {:.4g}, kappa_A = {:.4g}, kappa_V = {:.4g}\n", t.count,
                t.name, t.radius, t.vertices, t.faces, t.moduli.shear, t.moduli.area_dilation, t.moduli.bending, t.moduli.global_area, t.moduli.volume);
-    vertices += t.count * t.vertices;
   }
   for (std::size_t i = 0; i < l.cells.size(); ++i)
     fmt::print("{}effective radius of {} = {:.4g} (mesh {:.4g} + shell {:.3g})\n", i == 0 ? "Size        " : "            ", l.cells[i].name, l.cells[i].effective_radius,
@@ -186,7 +182,7 @@ void print(const Problem& problem, const LatticeParameters& l, const MemoryEstim
   const auto mebibytes = [](std::size_t bytes) { return double(bytes) / (1 << 20); };
   fmt::print("\nMemory      {:.1f} MiB at most; while it steps {:.1f} MiB: fluid {:.1f} ({:.0f} bytes a node)", mebibytes(memory.peak()), mebibytes(memory.suspension()),
              mebibytes(memory.fluid), double(memory.fluid) / nodes);
-  if (vertices > 0)
+  if (const std::int64_t vertices = l.vertices(); vertices > 0)
     fmt::print(", {} vertices {:.1f} ({:.0f} bytes each)", vertices, mebibytes(memory.suspension() - memory.fluid), double(memory.suspension() - memory.fluid) / double(vertices));
   fmt::print("\n");
   fmt::print("Time        {} predicted on this machine with {} threads ({:.1f} million node updates per second), packing and snapshots not included\n", format_duration(seconds),

@@ -21,11 +21,9 @@ namespace corpuscle::app {
 namespace {
 
 PlannedPoint plan_point(const std::string& scene, const SweepPoint& point) {
-  std::vector<std::string> overrides;
-  for (const Override& o : point.overrides) overrides.push_back(o.text());
   PlannedPoint planned;
   planned.point = point;
-  planned.problem = read_scene(scene, overrides);
+  planned.problem = read_scene(scene, point.texts());
   planned.lattice = to_lattice(planned.problem);
   for (const auto& type : planned.lattice.cells) planned.cells += type.count;
   planned.bytes = double(predict_memory(planned.problem, planned.lattice).peak());

@@ -19,7 +19,6 @@
 #include "io/progress.hpp"
 #include "io/scene.hpp"
 #include "physics/analysis/live.hpp"
-#include "physics/resolution_error.hpp"
 
 namespace corpuscle::app {
 
@@ -195,8 +194,7 @@ std::string result_line(const Summary& s, const std::filesystem::path& directory
     if (std::isfinite(s.relative_viscosity.error)) text += fmt::format(" +- {:.4f}", s.relative_viscosity.error);
     if (s.cell_count > 0 && !s.converged) text += " (not converged: the averaged part is shorter than 20 correlation times)";
   }
-  if (std::isfinite(s.viscosity_resolution_error))
-    text += fmt::format("; the resolution makes it {:+.0f} +- {:.0f} % off", 100 * s.viscosity_resolution_error, 100 * s.viscosity_resolution_error_uncertainty);
+  if (const ResolutionError& e = s.viscosity_resolution_error; e.known()) text += fmt::format("; the resolution makes it {:+.0f} +- {:.0f} % off", 100 * e.value, 100 * e.uncertainty);
   return text + fmt::format("; results in {}", directory.string());
 }
 
@@ -216,10 +214,7 @@ int run_to_end(const ReadyRun& run) {
   summary.bytes_peak = peak_memory_bytes();
   summary.stopped_by = end.stopped_by;
   summary.warnings = run.lattice.warnings;
-  const ResolutionError resolution = viscosity_resolution_error(run.problem, run.lattice);
-  summary.viscosity_resolution_error = resolution.value;
-  summary.viscosity_resolution_error_uncertainty = resolution.uncertainty;
-  summary.viscosity_resolution_error_reason = resolution.reason;
+  summary.viscosity_resolution_error = viscosity_resolution_error(run.problem, run.lattice);
   std::string failure = end.failure;
   int code = end.code;
   const auto attempt = [&](const auto& write) {  // each on its own: a small summary may fit where the series doesn't

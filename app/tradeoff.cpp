@@ -133,8 +133,7 @@ std::vector<StudyEntry> collect(const Study& study, const SweepDirectory& direct
       for (std::size_t o = 0; o < observed.size(); ++o)
         if (run.state == "finished") observed[o].push_back(run.observed[o]);
       entry.nodes = p.lattice.box_volume();
-      entry.vertices = 0;
-      for (const auto& type : p.lattice.cells) entry.vertices += double(type.count * type.vertices);
+      entry.vertices = double(p.lattice.vertices());
       entry.steps_per_strain = p.lattice.steps_per_strain;
       entry.point.cost = costs[at];
     }

@@ -14,11 +14,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json numbers(const Eigen::VectorXd& values) {
   Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
+  for (const double value : values) list.push_back(json_number(value));
   return list;
 }
 
@@ -32,14 +31,14 @@ Json trust(bool converged, const std::string& reason) { return {{"converged", co
 
 Json estimate_json(const analysis::NamedEstimate& item) {
   const auto& e = item.estimate;
-  return {{"value", number(e.value)}, {"error", number(e.error)}, {"unit", item.unit}, {"correlation_time", number(e.correlation_time)},
-          {"effective_samples", number(e.effective_samples)}, {"converged", e.converged}, {"reason", e.reason}, {"description", item.description}};
+  return {{"value", json_number(e.value)}, {"error", json_number(e.error)}, {"unit", item.unit}, {"correlation_time", json_number(e.correlation_time)},
+          {"effective_samples", json_number(e.effective_samples)}, {"converged", e.converged}, {"reason", e.reason}, {"description", item.description}};
 }
 
 Json curve_json(const analysis::NamedCurve& item) {
   const auto& c = item.curve;
   Json json = {{"x", numbers(c.x)}, {"value", numbers(c.value)}, {"error", numbers(c.error)}, {"x_unit", item.x_unit}, {"unit", item.unit},
-               {"x_label", item.x_label}, {"label", item.label}, {"trusted_until", number(c.trusted_until)}};
+               {"x_label", item.x_label}, {"label", item.label}, {"trusted_until", json_number(c.trusted_until)}};
   json.update(trust(c.converged, c.reason));
   json["description"] = item.description;
   return json;
@@ -49,20 +48,29 @@ const char* name_of(analysis::MeanFlow flow) { return flow == analysis::MeanFlow
 
 }  // namespace
 
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
 Json fit_json(const statistics::Fit& fit) {
   Json parameters = Json::object();
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    parameters[fit.names[i]] = {{"value", number(fit.parameters[k])}, {"error", number(fit.errors[k])}};
+    parameters[fit.names[i]] = {{"value", json_number(fit.parameters[k])}, {"error", json_number(fit.errors[k])}};
   }
-  Json json = {{"parameters", parameters}, {"chi2", number(fit.chi2)}, {"degrees_of_freedom", fit.degrees_of_freedom}, {"probability", number(fit.probability)}};
+  Json json = {{"parameters", parameters}, {"chi2", json_number(fit.chi2)}, {"degrees_of_freedom", fit.degrees_of_freedom}, {"probability", json_number(fit.probability)}};
   json.update(trust(fit.converged, fit.reason));
   return json;
 }
 
 Json asked_json(const analysis::AnalysisOptions& options) {
   return {{"wall_layer", options.wall_layer}, {"mean_flow", name_of(options.mean_flow)}, {"shear_rate", options.rate == analysis::RateOf::bulk ? "bulk" : "walls"},
-          {"discard", number(options.discard)}, {"longest_lag", number(options.longest_lag)}};
+          {"discard", json_number(options.discard)}, {"longest_lag", json_number(options.longest_lag)}};
 }
 
 Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& analysis) {
@@ -72,27 +80,27 @@ Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& 
   json["version"] = version_string();
   json["git_revision"] = git_revision();
   json["run"] = {{"directory", record.directory},
-                 {"capillary_number", number(record.capillary_number)},
-                 {"phi_geometric", number(record.phi_geometric)},
-                 {"phi_effective", number(record.phi_effective)},
+                 {"capillary_number", json_number(record.capillary_number)},
+                 {"phi_geometric", json_number(record.phi_geometric)},
+                 {"phi_effective", json_number(record.phi_effective)},
                  {"cell_count", record.cell_count()},
-                 {"radius", number(record.radius)},
-                 {"effective_radius", number(record.mean_effective_radius())},
-                 {"viscosity", number(record.viscosity)},
-                 {"shear_rate", number(record.shear_rate)},
-                 {"rate_factor", number(record.rate_factor)},
+                 {"radius", json_number(record.radius)},
+                 {"effective_radius", json_number(record.mean_effective_radius())},
+                 {"viscosity", json_number(record.viscosity)},
+                 {"shear_rate", json_number(record.shear_rate)},
+                 {"rate_factor", json_number(record.rate_factor)},
                  {"box", record.box},
-                 {"strain", number(record.strain)},
+                 {"strain", json_number(record.strain)},
                  {"samples", record.samples},
-                 {"sample_interval", number(record.interval)}};
+                 {"sample_interval", json_number(record.interval)}};
   json["settings"] = {{"wall_layer", settings.wall_layer},
                       {"mean_flow", name_of(settings.mean_flow)},
-                      {"discarded_strain", number(settings.discarded_strain)},
-                      {"longest_lag", number(settings.longest_lag)},
-                      {"contact_distance", number(settings.contact_distance)},
+                      {"discarded_strain", json_number(settings.discarded_strain)},
+                      {"longest_lag", json_number(settings.longest_lag)},
+                      {"contact_distance", json_number(settings.contact_distance)},
                       {"contact_distance_from", settings.contact_distance_from},
                       {"asked", asked_json(settings.asked)}};
-  json["equilibration"] = {{"strain", number(analysis.start_up_strain)}};
+  json["equilibration"] = {{"strain", json_number(analysis.start_up_strain)}};
   json["equilibration"].update(trust(analysis.start_up.converged, analysis.start_up.reason));
   json["estimates"] = json["curves"] = json["fits"] = json["tensors"] = Json::object();
   for (const auto& item : analysis.estimates) json["estimates"][item.name] = estimate_json(item);
@@ -101,8 +109,8 @@ Json analysis_json(const analysis::RunRecord& record, const analysis::Analysis& 
     Json fit = {{"model", item.model}};
     fit.update(fit_json(item.fit));
     fit["curve"] = item.curve;
-    fit["from"] = number(item.from);
-    fit["to"] = number(item.to);
+    fit["from"] = json_number(item.from);
+    fit["to"] = json_number(item.to);
     json["fits"][item.name] = fit;
   }
   for (const auto& item : analysis.tensors) {

@@ -21,8 +21,12 @@ std::string analysis_page(const analysis::RunRecord& record, const analysis::Ana
 /// What the user chose, as `settings.asked` of the file: to see whether an analysis would come out the same.
 nlohmann::ordered_json asked_json(const analysis::AnalysisOptions& options);
 
-/// Parts that the analysis of a sweep shares.
+/// Parts that the files of sweeps and studies share.
 nlohmann::ordered_json fit_json(const statistics::Fit& fit);
+/// NaN and infinity become null.
+nlohmann::ordered_json json_number(double value);
+/// A text as a field of a CSV file: in quotes where it has to be.
+std::string csv_field(const std::string& text);
 /// "4.690 ± 0.046": the error with two digits, the value to the same place; without an error six digits; "-" for NaN.
 std::string with_error(double value, double error);
 /// Texts under the heading "Warnings", one a line; nothing without any.

@@ -270,15 +270,14 @@ std::string shown(const toml::node& node) {
   return one_line(out.str());
 }
 
-void refuse(const std::string& origin, const toml::node& node, const std::string& problem) {
-  const auto line = node.source().begin.line;
+void refuse(const std::string& origin, std::ptrdiff_t line, const std::string& problem) {
   throw InputError(line == 0 ? fmt::format("{}: {}", origin, problem) : fmt::format("{}:{}: {}", origin, line, problem));
 }
 
 void allow_only(const std::string& origin, const toml::table& table, std::span<const std::string_view> known, const char* of) {
   for (const auto& [name, node] : table)
     if (std::find(known.begin(), known.end(), name.str()) == known.end())
-      refuse(origin, node, fmt::format("{} isn't a key of {}; allowed: {}; the nearest is {}", one_line(name.str()), of, fmt::join(known, ", "), nearest(name.str(), known)));
+      refuse(origin, node.source().begin.line, fmt::format("{} isn't a key of {}; allowed: {}; the nearest is {}", one_line(name.str()), of, fmt::join(known, ", "), nearest(name.str(), known)));
 }
 
 std::string pattern_of(std::string_view path) {

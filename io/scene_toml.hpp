@@ -32,8 +32,8 @@ Document parse_document(std::string_view text, const std::string& origin, const 
 /// "scene.toml:12: " or "--set: ", the start of every message about a value.
 std::string where(const Document& document, const std::string& path, const toml::node* node = nullptr);
 
-/// @throws InputError "ORIGIN:LINE: PROBLEM", without the line where there is none
-[[noreturn]] void refuse(const std::string& origin, const toml::node& node, const std::string& problem);
+/// @throws InputError "ORIGIN:LINE: PROBLEM", without the line where that is 0
+[[noreturn]] void refuse(const std::string& origin, std::ptrdiff_t line, const std::string& problem);
 /// @throws InputError when a table has a key that isn't known, with the nearest one. `of`: "[[axis]]"
 void allow_only(const std::string& origin, const toml::table& table, std::span<const std::string_view> known, const char* of);
 

@@ -57,7 +57,7 @@ class StudyReader {
   }
 
  private:
-  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { scene::refuse(origin_, node, problem); }
+  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { scene::refuse(origin_, node.source().begin.line, problem); }
   void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const { scene::allow_only(origin_, table, known, of); }
   std::optional<double> number(const toml::table& table, const char* key) const {
     const toml::node* node = table.get(key);
@@ -130,9 +130,7 @@ class StudyReader {
     };
     for (std::size_t knob = 0; knob < study_.knobs.size(); ++knob) study_.base_settings.push_back(setting(knob, base));
     for (const SweepPoint& point : study_.sweep.points) {
-      std::vector<std::string> overrides;
-      for (const Override& o : point.overrides) overrides.push_back(o.text());
-      const Problem problem = read_scene(study_.sweep.scene, overrides);
+      const Problem problem = read_scene(study_.sweep.scene, point.texts());
       study_.settings.emplace_back();
       for (std::size_t knob = 0; knob < study_.knobs.size(); ++knob) study_.settings.back().push_back(setting(knob, problem));
     }

@@ -155,9 +155,9 @@ void write_summary(const std::filesystem::path& path, const Summary& summary) {
   json["stopped_by"] = summary.stopped_by;
   json["warnings"] = summary.warnings;
   with_error("relative_viscosity", summary.relative_viscosity);
-  json["viscosity_resolution_error"] = summary.viscosity_resolution_error;
-  json["viscosity_resolution_error_uncertainty"] = summary.viscosity_resolution_error_uncertainty;
-  json["viscosity_resolution_error_reason"] = summary.viscosity_resolution_error_reason;
+  json["viscosity_resolution_error"] = summary.viscosity_resolution_error.value;
+  json["viscosity_resolution_error_uncertainty"] = summary.viscosity_resolution_error.uncertainty;
+  json["viscosity_resolution_error_reason"] = summary.viscosity_resolution_error.reason;
   with_error("wall_relative_viscosity", summary.wall_relative_viscosity);
   with_error("bulk_relative_viscosity", summary.bulk_relative_viscosity);
   with_error("normal_stress_difference_1", summary.normal_stress_difference_1);

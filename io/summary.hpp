@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "physics/resolution_error.hpp"
 #include "physics/sample.hpp"
 #include "physics/statistics/mean_error.hpp"
 #include "physics/units.hpp"
@@ -62,9 +63,7 @@ struct Summary {
   double mlups = none;                ///< million lattice node updates per second
   std::int64_t threads = 0;
   std::int64_t bytes_peak = 0;        ///< largest memory of the process
-  double viscosity_resolution_error = none;              ///< relative, from studies (physics/resolution_error.hpp); beside the statistical errors above
-  double viscosity_resolution_error_uncertainty = none;
-  std::string viscosity_resolution_error_reason;         ///< what it was measured with, or why it isn't known
+  ResolutionError viscosity_resolution_error;  ///< from studies; beside the statistical errors above
   std::vector<std::string> warnings;  ///< of settings close to a stability limit
   std::string stopped_by;             ///< "end", "interrupt", "guard" ...
   std::vector<OperatorTime> profile;  ///< empty unless it was asked for

@@ -74,10 +74,7 @@ class SweepReader {
   }
 
  private:
-  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { scene::refuse(origin_, node, problem); }
-  [[noreturn]] void fail(std::ptrdiff_t line, const std::string& problem) const {
-    throw InputError(line == 0 ? fmt::format("{}: {}", origin_, problem) : fmt::format("{}:{}: {}", origin_, line, problem));
-  }
+  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const { scene::refuse(origin_, node.source().begin.line, problem); }
 
   void allow_only(const toml::table& table, std::span<const std::string_view> known, const char* of) const { scene::allow_only(origin_, table, known, of); }
 
@@ -290,10 +287,10 @@ class SweepReader {
         const auto earlier = std::find_if(overrides.begin(), overrides.end(), [&](const Override& other) { return other.key == o.key; });
         if (earlier != overrides.end()) *earlier = o;
         else if (overrides.size() < most_overrides) overrides.push_back(o);
-        else fail(rule.line, fmt::format("this [[where]] gives the point {} more than {} overrides: put what all points have into the scene", sweep.points[i].name, most_overrides));
+        else scene::refuse(origin_, rule.line, fmt::format("this [[where]] gives the point {} more than {} overrides: put what all points have into the scene", sweep.points[i].name, most_overrides));
       }
     }
-    if (!any) fail(rule.line, "this [[where]] matches no point: match compares with what [[axis]] and [[also]] give, all of it must agree");
+    if (!any) scene::refuse(origin_, rule.line, "this [[where]] matches no point: match compares with what [[axis]] and [[also]] give, all of it must agree");
   }
 
   void check_names(const std::vector<std::string>& names) const {

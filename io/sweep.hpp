@@ -18,6 +18,12 @@ struct Override {
 struct SweepPoint {
   std::string name;                 ///< for its directory: letters, digits, `.`, `-`, `+`, `_`
   std::vector<Override> overrides;  ///< of axes and [[also]] first, then of [[where]]
+  /// As read_scene() takes them.
+  std::vector<std::string> texts() const {
+    std::vector<std::string> list;
+    for (const Override& o : overrides) list.push_back(o.text());
+    return list;
+  }
 };
 
 /// One axis: a key and its values, or a name and settings that change several keys together.

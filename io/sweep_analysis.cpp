@@ -18,7 +18,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::array run_numbers{"capillary_number", "phi_effective", "phi_geometric", "cell_count", "radius", "effective_radius", "strain"};
 
 double number(const Json& value) { return value.is_number() ? value.get<double>() : statistics::not_a_number; }
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 analysis::RunOutcome outcome_of(const AnalysedRun& run) {
   const Json& facts = run.analysis.at("run");
@@ -54,13 +53,6 @@ Json part_of(const AnalysedRun& run, const std::string& name, const char* part) 
 }
 
 std::string cell(const Json& value) { return value.is_number() ? fmt::format("{:.10g}", value.get<double>()) : value.is_boolean() ? (value.get<bool>() ? "1" : "0") : ""; }
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
 
 void write_h5(const std::filesystem::path& path, const SweepAnalysis& sweep) {
   auto file = hdf5::File::create(path);
@@ -134,14 +126,14 @@ Json sweep_analysis_json(const SweepAnalysis& sweep) {
     json["runs"].push_back({{"directory", run.directory}, {"run", run.analysis.at("run")}, {"estimates", estimates}, {"fits", run.analysis.at("fits")}});
   }
   for (const auto& curve : sweep.curves) {
-    json["flow_curves"].push_back({{"phi_effective", number(curve.phi_effective)},
-                                   {"phi_geometric", number(curve.phi_geometric)},
+    json["flow_curves"].push_back({{"phi_effective", json_number(curve.phi_effective)},
+                                   {"phi_geometric", json_number(curve.phi_geometric)},
                                    {"runs", curve.runs},
                                    {"shear_thinning", law("prefactor Ca^-exponent", curve.shear_thinning)},
                                    {"yield_stress", law("yield_stress/Ca + prefactor Ca^-exponent", curve.yield_stress)}});
   }
   const auto& critical = sweep.critical_volume_fraction;
-  json["critical_volume_fraction"] = {{"value", number(critical.value)}, {"error", number(critical.error)}, {"converged", critical.converged}, {"reason", critical.reason},
+  json["critical_volume_fraction"] = {{"value", json_number(critical.value)}, {"error", json_number(critical.error)}, {"converged", critical.converged}, {"reason", critical.reason},
                                       {"description", "effective volume fraction at which the yield stress of the fits vanishes"}};
   json["gap_radius"] = law("l = 2 slope (phi^(-1/3) - 1), l in lattice spacings", sweep.gap_radius);
   json["warnings"] = sweep.warnings;
@@ -154,7 +146,7 @@ std::string sweep_analysis_csv(const SweepAnalysis& sweep) {
   for (const char* name : run_numbers) text += fmt::format(",{}", name);
   for (const auto& name : names) text += fmt::format(",{0},{0}_error,{0}_converged", name);
   for (const auto& run : sweep.runs) {
-    text += "\n" + quoted(run.directory);
+    text += "\n" + csv_field(run.directory);
     for (const char* name : run_numbers) text += "," + cell(run.analysis.at("run").at(name));
     for (const auto& name : names)
       for (const char* part : {"value", "error", "converged"}) text += "," + cell(part_of(run, name, part));

@@ -15,8 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using statistics::Estimate;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json estimate(const Estimate& e) { return {{"value", number(e.value)}, {"error", number(e.error)}, {"converged", e.converged}, {"reason", e.reason}}; }
+Json estimate(const Estimate& e) { return {{"value", json_number(e.value)}, {"error", json_number(e.error)}, {"converged", e.converged}, {"reason", e.reason}}; }
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
 std::string percent(const Estimate& d) { return std::isnan(d.value) ? "-" : with_error(100 * d.value, 100 * d.error) + " %"; }
 std::string digits(double value, int count = 3) { return std::isfinite(value) ? fmt::format("{:.{}g}", value, count) : "-"; }
@@ -133,41 +132,41 @@ Json tradeoff_json(const StudyResult& result) {
     r["from"] = result.reference_from[o];
     if (result.limits.empty()) continue;
     const auto& limit = result.limits[o];
-    r["chi2"] = number(limit.chi2);
+    r["chi2"] = json_number(limit.chi2);
     r["degrees_of_freedom"] = limit.degrees_of_freedom;
     for (std::size_t f = 0; f < result.families.size(); ++f) {
       const auto& family = limit.families[f];
-      r["families"].push_back({{"settings", settings_of(study, result.families[f])}, {"limit", number(family.limit.value)}, {"error", number(family.limit.error)}, {"from_resolution", number(family.from)},
-                               {"first", number(family.first)}, {"second", number(family.second)}, {"statistical_error", number(family.statistical_error)}, {"model_error", number(family.model_error)}});
+      r["families"].push_back({{"settings", settings_of(study, result.families[f])}, {"limit", json_number(family.limit.value)}, {"error", json_number(family.limit.error)}, {"from_resolution", json_number(family.from)},
+                               {"first", json_number(family.first)}, {"second", json_number(family.second)}, {"statistical_error", json_number(family.statistical_error)}, {"model_error", json_number(family.model_error)}});
     }
   }
   json["points"] = Json::array();
   for (std::size_t i = 0; i < result.entries.size(); ++i) {
     const StudyEntry& entry = result.entries[i];
     Json point = {{"name", entry.point.name}, {"settings", settings_of(study, entry.point.settings)}, {"state", entry.state}, {"message", entry.message}, {"runs", entry.runs}};
-    point["nodes"] = number(entry.nodes);
-    point["vertices"] = number(entry.vertices);
-    point["steps_per_strain"] = number(entry.steps_per_strain);
-    point["core_seconds_per_strain"] = {{"predicted", number(entry.point.cost)}, {"measured", number(entry.measured)}};
+    point["nodes"] = json_number(entry.nodes);
+    point["vertices"] = json_number(entry.vertices);
+    point["steps_per_strain"] = json_number(entry.steps_per_strain);
+    point["core_seconds_per_strain"] = {{"predicted", json_number(entry.point.cost)}, {"measured", json_number(entry.measured)}};
     for (std::size_t o = 0; o < study.observables.size(); ++o) {
       Json& observed = point["observed"][study.observables[o]] = estimate(entry.point.observed[o]);
       const Estimate& d = result.deviations[i].of[o];
-      observed["deviation"] = {{"value", number(d.value)}, {"error", number(d.error)}};
+      observed["deviation"] = {{"value", json_number(d.value)}, {"error", json_number(d.error)}};
     }
-    point["deviation"] = {{"value", number(result.deviations[i].size)}, {"error", number(result.deviations[i].uncertainty)}, {"of", study.observables[result.deviations[i].worst]}};
+    point["deviation"] = {{"value", json_number(result.deviations[i].size)}, {"error", json_number(result.deviations[i].uncertainty)}, {"of", study.observables[result.deviations[i].worst]}};
     point["on_front"] = on_front(result, i);
     json["points"].push_back(point);
   }
   json["front"] = json["limiting_knobs"] = json["knob_steps"] = json["orders"] = Json::array();
   for (const std::size_t i : result.front) json["front"].push_back(result.points[i].name);
   for (const auto& l : result.limiting)
-    json["limiting_knobs"].push_back({{"point", result.points[l.point].name}, {"knob", study.knobs[l.knob]}, {"to", l.to}, {"deviation", number(l.error)}, {"cost_factor", number(l.cost_factor)}});
+    json["limiting_knobs"].push_back({{"point", result.points[l.point].name}, {"knob", study.knobs[l.knob]}, {"to", l.to}, {"deviation", json_number(l.error)}, {"cost_factor", json_number(l.cost_factor)}});
   for (const auto& s : result.steps)
-    json["knob_steps"].push_back({{"knob", study.knobs[s.knob]}, {"from", s.from}, {"to", s.to}, {"pairs", s.pairs}, {"cost_factor", number(s.cost_factor)}, {"deviation_factor", number(s.error_factor)}});
+    json["knob_steps"].push_back({{"knob", study.knobs[s.knob]}, {"from", s.from}, {"to", s.to}, {"pairs", s.pairs}, {"cost_factor", json_number(s.cost_factor)}, {"deviation_factor", json_number(s.error_factor)}});
   for (const auto& o : result.orders) {
     const Estimate exponent = o.fit.parameter("exponent");
     json["orders"].push_back({{"knob", study.knobs[o.knob]}, {"observable", study.observables[o.observable]}, {"others", settings_of(study, o.others)}, {"points", o.points},
-                              {"order", number(-exponent.value)}, {"error", number(exponent.error)}, {"converged", o.fit.converged}});
+                              {"order", json_number(-exponent.value)}, {"error", json_number(exponent.error)}, {"converged", o.fit.converged}});
   }
   json["warnings"] = result.warnings;
   return json;
@@ -180,11 +179,10 @@ std::string tradeoff_csv(const StudyResult& result) {
   text += ",state,nodes,vertices,steps_per_strain,core_seconds_per_strain,core_seconds_per_strain_measured";
   for (const auto& name : study.observables) text += fmt::format(",{0},{0}_error,{0}_deviation,{0}_deviation_error", name);
   text += ",on_front";
-  const auto quoted = [](const std::string& word) { return word.find(',') == std::string::npos ? word : "\"" + word + "\""; };
   for (std::size_t i = 0; i < result.entries.size(); ++i) {
     const StudyEntry& entry = result.entries[i];
     text += "\n" + entry.point.name;
-    for (const auto& setting : entry.point.settings) text += "," + quoted(setting);
+    for (const auto& setting : entry.point.settings) text += "," + csv_field(setting);
     text += fmt::format(",{}", entry.state);
     for (const double value : {entry.nodes, entry.vertices, entry.steps_per_strain, entry.point.cost, entry.measured}) text += "," + cell(value);
     for (std::size_t o = 0; o < study.observables.size(); ++o) {

@@ -1,5 +1,6 @@
 // What the resolution does to the viscosity of a suspension, as the studies of docs/accuracy.md measured it.
 #pragma once
+#include <limits>
 #include <span>
 #include <string>
 
@@ -24,7 +25,7 @@ struct MeasuredDeviation {
 std::span<const MeasuredDeviation> measured_deviations();
 
 struct ResolutionError {
-  double value = 0, uncertainty = 0;   ///< relative: 0.05 means that the viscosity comes out 5 % too large. NaN where it isn't known
+  double value = std::numeric_limits<double>::quiet_NaN(), uncertainty = value;  ///< relative: 0.05 means that the viscosity comes out 5 % too large. NaN where it isn't known
   std::string reason;                  ///< why it isn't known, or what it was interpolated between
   bool known() const { return uncertainty > 0; }
 };

@@ -1,11 +1,12 @@
 #include "physics/tradeoff.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace corpuscle::tradeoff {

@@ -90,6 +90,12 @@ struct LatticeParameters {
   /// The next step at which membranes and fluid are coupled.
   std::int64_t next_coupling(std::int64_t step) const { return (step + coupling_every - 1) / coupling_every * coupling_every; }
   std::vector<CellTypeLattice> cells;
+  /// Of all cells together.
+  std::int64_t vertices() const {
+    std::int64_t sum = 0;
+    for (const auto& type : cells) sum += type.count * type.vertices;
+    return sum;
+  }
   std::vector<ShearRateLimit> limits;  ///< all limits, the deciding (smallest) one first
   std::vector<StabilityMargin> margins;
   std::vector<std::string> warnings;   ///< for the user: settings that are close to a stability limit, or beyond it with accuracy.allow_unstable

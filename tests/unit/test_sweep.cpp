@@ -20,12 +20,6 @@ std::vector<std::string> names(const Sweep& sweep) {
   return list;
 }
 
-std::vector<std::string> texts(const SweepPoint& point) {
-  std::vector<std::string> list;
-  for (const auto& o : point.overrides) list.push_back(o.text());
-  return list;
-}
-
 Sweep parse(const std::string& text) { return parse_sweep(text, "folder/sweep.toml"); }
 
 const std::string paper = R"(
@@ -46,7 +40,7 @@ TEST_CASE("sweep: the matrix of the axes, the last one running fastest, and its 
   const Sweep sweep = parse(paper);
   CHECK(sweep.scene == "folder/base.toml");
   CHECK(names(sweep) == Names{"phi0.12-Ca0.081", "phi0.12-Ca0.0028", "phi0.24-Ca0.081", "phi0.24-Ca0.0028"});
-  CHECK(texts(sweep.points[1]) == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.0028"});
+  CHECK(sweep.points[1].texts() == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.0028"});
 }
 
 TEST_CASE("sweep: [[also]] adds points, quoted, dotted and nested keys alike", "[sweep]") {
@@ -64,7 +58,7 @@ flow.capillary_number = 0.5
   REQUIRE(sweep.points.size() == 7);
   CHECK(sweep.points[4].name == "phi0.45-Ca0.00028");
   CHECK(sweep.points[5].name == "phi0.45-Ca8.4e-05-strain3");
-  CHECK(texts(sweep.points[5]) == Names{"cells.0.effective_volume_fraction=0.45", "flow.capillary_number=8.4e-05", "run.strain=3"});
+  CHECK(sweep.points[5].texts() == Names{"cells.0.effective_volume_fraction=0.45", "flow.capillary_number=8.4e-05", "run.strain=3"});
   CHECK(sweep.points[6].name == "Ca0.5");  // the volume fraction is that of the scene
 }
 
@@ -81,11 +75,11 @@ match = { "flow.capillary_number" = [0.0028, 0.5], "cells.0.effective_volume_fra
 set = { "run.strain" = 40, "box.size" = [8, 8, 10] }
 )");
   REQUIRE(sweep.points.size() == 5);
-  CHECK(texts(sweep.points[0]).size() == 2);
-  CHECK(texts(sweep.points[1]) == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.0028", "accuracy.vertex_update=\"chebyshev\"", "run.strain=20"});
-  CHECK(texts(sweep.points[3]) == Names{"cells.0.effective_volume_fraction=0.24", "flow.capillary_number=0.0028", "accuracy.vertex_update=\"chebyshev\"", "run.strain=40",
+  CHECK(sweep.points[0].texts().size() == 2);
+  CHECK(sweep.points[1].texts() == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.0028", "accuracy.vertex_update=\"chebyshev\"", "run.strain=20"});
+  CHECK(sweep.points[3].texts() == Names{"cells.0.effective_volume_fraction=0.24", "flow.capillary_number=0.0028", "accuracy.vertex_update=\"chebyshev\"", "run.strain=40",
                                         "box.size=[8, 8, 10]"});
-  CHECK(texts(sweep.points[4]) == Names{"flow.capillary_number=0.0028", "run.strain=1", "accuracy.vertex_update=\"chebyshev\""});
+  CHECK(sweep.points[4].texts() == Names{"flow.capillary_number=0.0028", "run.strain=1", "accuracy.vertex_update=\"chebyshev\""});
   CHECK(names(sweep)[3] == "phi0.24-Ca0.0028");  // what follows from the others isn't in the name
 }
 
@@ -174,8 +168,8 @@ settings = [ { label = "base", set = {} }, { label = "small", set = { "accuracy.
   REQUIRE(sweep.points.size() == 8);
   CHECK(names(sweep)[0] == "phi0.12-Ca0.081-size_base");
   CHECK(names(sweep)[1] == "phi0.12-Ca0.081-size_small");
-  CHECK(texts(sweep.points[0]) == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.081"});
-  CHECK(texts(sweep.points[1]).size() == 4);
+  CHECK(sweep.points[0].texts() == Names{"cells.0.effective_volume_fraction=0.12", "flow.capillary_number=0.081"});
+  CHECK(sweep.points[1].texts().size() == 4);
   REQUIRE(sweep.axes.size() == 3);
   CHECK(sweep.axes[1].is_key);
   CHECK_FALSE(sweep.axes[2].is_key);
