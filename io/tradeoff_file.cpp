@@ -59,7 +59,7 @@ std::string front_page(const StudyResult& result) {
 std::string families_page(const StudyResult& result) {
   if (result.limits.empty()) return "";
   const Study& study = result.study;
-  std::string page = fmt::format("\n## Extrapolation\n\nvalue = limit + a/{0} + b/{0}², by family; the error has the statistical part and the change of the limit without the coarsest resolution.\n\n|", study.reference.extrapolate);
+  std::string page = fmt::format("\n## Extrapolation\n\nvalue = limit + a/{0} + b/{0}², by family; the error has the statistical part, the change of the limit without the coarsest resolution, and a part of the way to it from the finest one.\n\n|", study.reference.extrapolate);
   page += " settings | observable | from | limit | a | b |\n|---|---|---|---|---|---|\n";
   for (std::size_t o = 0; o < result.limits.size(); ++o)
     for (std::size_t f = 0; f < result.families.size(); ++f) {
