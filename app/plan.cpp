@@ -12,7 +12,7 @@
 #include "io/scene.hpp"
 #include "physics/memory.hpp"
 #include "physics/model_effects.hpp"
-#include "physics/resolution_error.hpp"
+#include "physics/resolution_choice.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -42,6 +42,13 @@ std::vector<std::string> active_models(const Problem& problem, const LatticePara
 std::vector<DispensableModel> not_needed(const Problem& problem, const LatticeParameters& lattice, const Calibration& c) {
   const double step = c.seconds_per_step(lattice);
   return dispensable_models(problem, lattice, step > 0 ? std::max(0.0, 1 - c.per_node * lattice.box_volume() / step) : 0);
+}
+
+/// What else to run the scene with: settings that no cheaper one equals in accuracy, without its own.
+std::vector<ResolutionChoice> alternatives(const Problem& problem) {
+  std::vector<ResolutionChoice> choices = worthwhile(resolution_choices(problem));
+  std::erase_if(choices, [&](const auto& c) { return c.radius == problem.accuracy.radius && c.delta_kernel == problem.accuracy.delta_kernel; });
+  return choices;
 }
 
 /// NaN becomes null when it is written.
@@ -95,6 +102,13 @@ nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const
   j["models"] = active_models(problem, l);
   const ResolutionError resolution = viscosity_resolution_error(problem, l);
   j["viscosity_resolution_error"] = {{"value", resolution.value}, {"uncertainty", resolution.uncertainty}, {"reason", resolution.reason}};
+  j["alternatives"] = nlohmann::json::array();
+  for (const auto& a : alternatives(problem))
+    j["alternatives"].push_back({{"radius", a.radius},
+                                 {"delta_kernel", a.delta_kernel},
+                                 {"viscosity_resolution_error", a.error.value},
+                                 {"viscosity_resolution_error_uncertainty", a.error.uncertainty},
+                                 {"relative_time", a.cost / resolution_cost(problem, l)}});
   j["not_needed"] = nlohmann::json::array();
   for (const auto& m : not_needed(problem, l, c))
     j["not_needed"].push_back({{"model", m.model},
@@ -172,6 +186,9 @@ void print(const Problem& problem, const LatticeParameters& l, const MemoryEstim
     if (resolution.known())
       fmt::print("Accuracy    resolution makes the viscosity {:+.0f} ± {:.0f} % off ({}; docs/accuracy.md)\n", 100 * resolution.value, 100 * resolution.uncertainty, resolution.reason);
     else fmt::print("Accuracy    what the resolution does to the viscosity isn't known here: {} (docs/accuracy.md)\n", resolution.reason);
+    for (const auto& a : alternatives(problem))
+      fmt::print("            radius = {:g}, delta_kernel = {} would make it {:+.0f} ± {:.0f} %, in {:.2g} times the time\n", a.radius, a.delta_kernel, 100 * a.error.value, 100 * a.error.uncertainty,
+                 a.cost / resolution_cost(problem, l));
   }
   print_not_needed(not_needed(problem, l, calibration));
   const double nodes = l.box_volume();

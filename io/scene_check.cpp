@@ -13,6 +13,7 @@
 #include "io/scene_keys.hpp"
 #include "io/scene_si.hpp"
 #include "io/scene_toml.hpp"
+#include "physics/resolution_choice.hpp"
 
 namespace corpuscle::scene {
 
@@ -30,6 +31,7 @@ class Checker {
     coupling();
     files();
     meaningless();
+    target();
   }
 
  private:
@@ -190,6 +192,28 @@ class Checker {
     if (p_.accuracy.coupling_every > 1 && p_.accuracy.vertex_update == VertexUpdate::euler && !p_.cells.empty())
       fail("accuracy.coupling_every", fmt::format("{} contradicts {}: vertices don't move with the velocity of the last step then; remove one of both", said("accuracy.coupling_every"),
                                                   said("accuracy.vertex_update")));
+  }
+
+  /// The merged scene has what the target chose, not the target.
+  void target() {
+    if (!p_.accuracy.target) return;
+    const std::string said_target = said("accuracy.target");
+    if (has("accuracy.radius") && has("accuracy.delta_kernel"))
+      fail("accuracy.target", fmt::format("{} leaves nothing to choose with {} and {}: remove one of the three", said_target, said("accuracy.radius"), said("accuracy.delta_kernel")));
+    if (has("accuracy.subdivision"))
+      fail("accuracy.target", fmt::format("{} contradicts {}: errors were measured with the default mesh; remove one of both", said_target, said("accuracy.subdivision")));
+    if (!has("accuracy.collision") && !has("accuracy.magic_parameter") && !has("accuracy.relaxation_time")) {
+      p_.accuracy.collision = CollisionKind::trt;
+      p_.accuracy.relaxation_time = studied_relaxation_time;
+    }
+    const double wanted = *p_.accuracy.target;
+    p_.accuracy.target.reset();
+    try {
+      choose_resolution(p_, wanted, has("accuracy.radius") ? std::optional(p_.accuracy.radius) : std::nullopt,
+                        has("accuracy.delta_kernel") ? std::optional(p_.accuracy.delta_kernel) : std::nullopt);
+    } catch (const InputError& error) {
+      fail("accuracy.target", error.what());
+    }
   }
 
   void files() {

@@ -67,6 +67,8 @@ const Key table[] = {
 
     {"accuracy.preset", CORPUSCLE_FIELD(P.accuracy.preset), any, "draft|standard|reference", "", "",
      "Sets radius, delta_kernel, collision and precision; each of them given beside it wins"},
+    {"accuracy.target", CORPUSCLE_FIELD(P.accuracy.target), between(0.001, 1), "", "", "none",
+     "Chooses radius and delta_kernel, and TRT with τ = 2: the cheapest measured ones whose resolution changes the viscosity by less than this part of it (docs/accuracy.md)"},
     {"accuracy.radius", CORPUSCLE_FIELD(P.accuracy.radius), between(2, 100), "", "lattice units", "preset", "r: nodes per cell radius"},
     {"accuracy.subdivision", CORPUSCLE_FIELD(P.accuracy.subdivision), between(2, 200), "", "", "nearest to the radius",
      "Frequency n of the icosahedron for relative_radius 1 (others in proportion): 20 n² faces"},

@@ -26,6 +26,7 @@ const std::vector<std::vector<std::string_view>> alternatives = {
 };
 /// What an override of the preset takes over from the file: without this `--set accuracy.preset=draft` had no effect on a merged scene.
 constexpr std::array<std::string_view, 6> preset_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "precision"};
+constexpr std::array<std::string_view, 6> target_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "relaxation_time"};
 
 bool valid_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
@@ -182,8 +183,10 @@ void drop_replaced(Document& document) {
         if (other != pattern) drop(other.starts_with("cells.") ? section + std::string(other.substr(other.rfind('.') + 1)) : std::string(other));
       }
     }
-    if (pattern != "accuracy.preset") continue;
-    for (const std::string_view knob : preset_knobs) drop(section + std::string(knob));
+    if (pattern == "accuracy.preset")
+      for (const std::string_view knob : preset_knobs) drop(section + std::string(knob));
+    if (pattern == "accuracy.target")
+      for (const std::string_view knob : target_knobs) drop(section + std::string(knob));
   }
 }
 

@@ -86,6 +86,7 @@ struct ContactSpec {
 /// [accuracy] the knobs that trade speed for error.
 struct AccuracySpec {
   std::string preset = "standard";           ///< draft | standard | reference
+  std::optional<double> target;              ///< error of the viscosity that radius and kernel are chosen for; not set once they are (physics/resolution_choice.hpp)
   double radius = 8;                         ///< r in lattice units
   std::optional<int> subdivision;            ///< frequency n of the geodesic icosahedron; default: nearest to the radius
   int delta_kernel = 3;                      ///< 2 | 3 | 4 points

@@ -13,6 +13,9 @@ namespace corpuscle {
 enum class CountedBy { mesh, effective, hydrodynamic };
 const char* name_of(CountedBy counted);
 
+/// Of TRT in the studies.
+constexpr double studied_relaxation_time = 2;
+
 /// A setting that was measured: relative deviation of the viscosity from its limit of infinite resolution.
 struct MeasuredDeviation {
   double phi = 0;   ///< that the scene asks for
