@@ -20,6 +20,7 @@
 #include "io/durable.hpp"
 #include "io/sweep_analysis.hpp"
 #include "io/tradeoff.hpp"
+#include "physics/resolution_error.hpp"
 
 namespace corpuscle::app {
 namespace {
@@ -131,7 +132,7 @@ std::vector<StudyEntry> collect(const Study& study, const SweepDirectory& direct
       if (run.state != "finished") stands(run.state, run.message);
       else measured.push_back(run.measured);
       for (std::size_t o = 0; o < observed.size(); ++o)
-        if (run.state == "finished") observed[o].push_back(run.observed[o]);
+        if (run.state == "finished") observed[o].push_back(at_fraction(run.observed[o], study.observables[o], counted_fraction(p.problem, p.lattice), study.fraction));
       entry.nodes = p.lattice.box_volume();
       entry.vertices = double(p.lattice.vertices());
       entry.steps_per_strain = p.lattice.steps_per_strain;

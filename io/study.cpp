@@ -46,11 +46,12 @@ class StudyReader {
     const toml::node* node = root_.get("study");
     if (node == nullptr || !node->is_table()) throw InputError(fmt::format("{}: [study] is missing: it names the observables and what they are compared with, see docs/tradeoff.md", origin_));
     const toml::table& table = *node->as_table();
-    static constexpr std::array<std::string_view, 4> known{"observables", "wall_layer", "discard", "reference"};
+    static constexpr std::array<std::string_view, 5> known{"observables", "wall_layer", "discard", "fraction", "reference"};
     allow_only(table, known, "[study]");
     read_observables(table);
     study_.wall_layer = number(table, "wall_layer").value_or(study_.wall_layer);
     study_.discard = number(table, "discard");
+    if (const toml::node* fraction = table.get("fraction")) read_fraction(*fraction);
     find_knobs();
     read_reference(table);
     return std::move(study_);
@@ -91,6 +92,27 @@ class StudyReader {
     for (const std::string& name : texts(*node, "observables")) {
       if (std::find(study_.observables.begin(), study_.observables.end(), name) != study_.observables.end()) fail(*node, fmt::format("observables names {} twice", name));
       study_.observables.push_back(known_observable(*node, name));
+    }
+  }
+
+  void read_fraction(const toml::node& node) {
+    constexpr const char* form = "must be a table such as { phi = 0.45, exponents = { relative_viscosity = 1.6 } }";
+    if (!node.is_table()) fail(node, fmt::format("fraction = {} {}", shown(node), form));
+    const toml::table& table = *node.as_table();
+    static constexpr std::array<std::string_view, 2> known{"phi", "exponents"};
+    allow_only(table, known, "[study.fraction]");
+    const auto phi = number(table, "phi");
+    const toml::table* exponents = table["exponents"].as_table();
+    if (!phi || exponents == nullptr) fail(node, fmt::format("[study.fraction] {}", form));
+    if (!(*phi > 0 && *phi < 1)) fail(node, fmt::format("phi = {:g} must be > 0 and < 1", *phi));
+    study_.fraction = StudyFraction{*phi, {}};
+    for (const auto& [name, value] : *exponents) {
+      const std::string observable(name.str());
+      if (std::find(study_.observables.begin(), study_.observables.end(), observable) == study_.observables.end())
+        fail(value, fmt::format("{} is none of the observables: {}", one_line(observable), fmt::join(study_.observables, ", ")));
+      const auto exponent = value.value<double>();
+      if (!exponent || !(std::abs(*exponent) <= 10)) fail(value, fmt::format("{} = {} must be a number between -10 and 10", observable, shown(value)));
+      study_.fraction->exponents[observable] = *exponent;
     }
   }
 
@@ -218,6 +240,17 @@ std::vector<std::vector<std::size_t>> repeats_of(const Study& study) {
     groups[found->second].push_back(i);
   }
   return groups;
+}
+
+statistics::Estimate at_fraction(statistics::Estimate e, const std::string& observable, double phi, const std::optional<StudyFraction>& fraction) {
+  if (!fraction || !(phi > 0)) return e;
+  const auto exponent = fraction->exponents.find(observable);
+  if (exponent == fraction->exponents.end()) return e;
+  const double factor = std::pow(fraction->phi / phi, exponent->second);
+  const double without_cells = observable.find("relative_viscosity") == std::string::npos ? 0 : 1;
+  e.value = without_cells + (e.value - without_cells) * factor;
+  e.error *= factor;
+  return e;
 }
 
 std::vector<std::string> observable_names() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/sweep.hpp"
+#include "physics/statistics/estimate.hpp"
 
 namespace corpuscle {
 
@@ -22,11 +23,18 @@ struct StudyReference {
   std::map<std::string, Value> values;  ///< published ones, by observable
 };
 
+/// Numbers of cells are whole, so that no two settings have quite the same volume fraction: observables are taken to this one.
+struct StudyFraction {
+  double phi = 0;
+  std::map<std::string, double> exponents;  ///< by observable: how it grows with the fraction, near this one; others stay
+};
+
 struct Study {
   Sweep sweep;
   std::vector<std::string> observables;  ///< names of analysis.json
   double wall_layer = 4;                 ///< as corpuscle analyse --wall-layer
   std::optional<double> discard;         ///< as --discard, strains
+  std::optional<StudyFraction> fraction;
   StudyReference reference;
   std::vector<std::string> knobs;                   ///< names of the axes, then keys that only [[also]] changes; run.seed is none
   std::vector<std::vector<std::string>> settings;   ///< [point][knob]: label, or value; that of the base scene where the point doesn't say
@@ -40,6 +48,9 @@ Study parse_study(std::string_view text, const std::string& origin);
 
 /// The repeats of a study: points that differ in their seed only, in the order of the first of each.
 std::vector<std::vector<std::size_t>> repeats_of(const Study& study);
+
+/// An observable of a run whose cells fill `phi`, at the fraction of the study: e ∝ phi^exponent, a viscosity over that of the fluid by what it exceeds 1. Unchanged without an exponent.
+statistics::Estimate at_fraction(statistics::Estimate e, const std::string& observable, double phi, const std::optional<StudyFraction>& fraction);
 
 /// Names that a study may observe.
 std::vector<std::string> observable_names();

@@ -71,9 +71,16 @@ std::string families_page(const StudyResult& result) {
   return page;
 }
 
+std::string fraction_text(const Study& study) {
+  if (!study.fraction || study.fraction->exponents.empty()) return "";
+  std::string text;
+  for (const auto& [observable, exponent] : study.fraction->exponents) text += fmt::format("{}{} ∝ φ^{:g}", text.empty() ? "" : ", ", observable, exponent);
+  return fmt::format("Taken to φ = {:g} with {} (a viscosity without its 1). ", study.fraction->phi, text);
+}
+
 std::string points_page(const StudyResult& result) {
   const Study& study = result.study;
-  std::string page = "\n## All points\n\nEach observable with its deviation from the reference. A star marks what is not converged, **bold** what is on the front.\n\n|";
+  std::string page = "\n## All points\n\n" + fraction_text(study) + "Each observable with its deviation from the reference. A star marks what is not converged, **bold** what is on the front.\n\n|";
   for (const auto& knob : study.knobs) page += fmt::format(" {} |", knob);
   page += " steps/strain | core s/strain | measured |";
   for (const auto& name : study.observables) page += fmt::format(" {} | deviation |", name);
@@ -127,6 +134,7 @@ Json tradeoff_json(const StudyResult& result) {
   Json json = {{"format", tradeoff_format}, {"version", version_string()}, {"git_revision", git_revision()}, {"machine", result.machine}, {"scene", study.sweep.scene.substr(study.sweep.scene.rfind('/') + 1)}, {"observables", study.observables}};
   json["knobs"] = study.knobs;
   json["base"] = settings_of(study, study.base_settings);
+  if (study.fraction) json["fraction"] = {{"phi", study.fraction->phi}, {"exponents", study.fraction->exponents}};
   for (std::size_t o = 0; o < study.observables.size(); ++o) {
     Json& r = json["reference"][study.observables[o]] = estimate(result.reference.values[o]);
     r["from"] = result.reference_from[o];

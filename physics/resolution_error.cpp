@@ -54,13 +54,19 @@ std::string not_measured(const Problem& p, const LatticeParameters& l) {
 
 const char* name_of(CountedBy counted) { return counted == CountedBy::mesh ? "mesh" : counted == CountedBy::effective ? "effective" : "hydrodynamic"; }
 
+CountedBy counted_by(const Problem& problem) {
+  if (problem.accuracy.cell_size == CellSize::hydrodynamic) return CountedBy::hydrodynamic;
+  return !problem.cells.empty() && problem.cells[0].effective_volume_fraction ? CountedBy::effective : CountedBy::mesh;
+}
+
+double counted_fraction(const Problem& problem, const LatticeParameters& lattice) {
+  return counted_by(problem) == CountedBy::effective ? lattice.phi_effective : lattice.phi_nominal;
+}
+
 ResolutionError viscosity_resolution_error(const Problem& problem, const LatticeParameters& lattice) {
   if (const std::string reason = not_measured(problem, lattice); !reason.empty()) return unknown(reason);
-  const CellSpec& cells = problem.cells[0];
-  const CountedBy counted = problem.accuracy.cell_size == CellSize::hydrodynamic ? CountedBy::hydrodynamic
-                            : cells.effective_volume_fraction                    ? CountedBy::effective
-                                                                                 : CountedBy::mesh;
-  const double phi = counted == CountedBy::effective ? lattice.phi_effective : lattice.phi_nominal;
+  const CountedBy counted = counted_by(problem);
+  const double phi = counted_fraction(problem, lattice);
   std::map<double, std::map<double, Value>> measured;  // by phi and radius
   for (const MeasuredDeviation& m : measured_deviations())
     if (m.counted == counted && m.delta_kernel == problem.accuracy.delta_kernel) measured[m.phi][m.radius] = {m.deviation, m.uncertainty};

@@ -12,6 +12,10 @@ namespace corpuscle {
 /// How a scene counts its cells decides what their shells do: see docs/accuracy.md.
 enum class CountedBy { mesh, effective, hydrodynamic };
 const char* name_of(CountedBy counted);
+/// Of the first cell type.
+CountedBy counted_by(const Problem& problem);
+/// The volume fraction that the scene asks for in its way of counting, with the whole number of cells that came of it.
+double counted_fraction(const Problem& problem, const LatticeParameters& lattice);
 
 /// Of TRT in the studies.
 constexpr double studied_relaxation_time = 2;

@@ -1,4 +1,5 @@
 // Study files: knobs and their settings, the reference, repeats, and every way to get one wrong.
+#include <cmath>
 #include <fstream>
 
 #include "io/study.hpp"
@@ -71,6 +72,25 @@ TEST_CASE("study: the other references", "[study]") {
   CHECK(values.reference.values.at("deformation").error == 0.01);
 }
 
+TEST_CASE("study: observables are taken to the fraction of the study", "[study]") {
+  const Folder folder;
+  CHECK_FALSE(folder.parse(axes + observed + limit).fraction);
+  const auto fraction = folder.parse(axes + observed + "fraction = { phi = 0.2, exponents = { relative_viscosity = 1.5 } }\n" + limit).fraction;
+  REQUIRE(fraction);
+  CHECK(fraction->phi == 0.2);
+  // eta_r - 1 = c phi^1.5 at phi = 0.19 and 0.21 gives the same value at 0.2.
+  for (const double phi : {0.19, 0.2, 0.21}) {
+    const statistics::Estimate there{.value = 1 + 7 * std::pow(phi, 1.5), .error = 0.01};
+    const statistics::Estimate here = at_fraction(there, "relative_viscosity", phi, fraction);
+    CHECK(here.value == Approx(1 + 7 * std::pow(0.2, 1.5)).epsilon(1e-12));
+    CHECK(here.error == Approx(0.01 * std::pow(0.2 / phi, 1.5)).epsilon(1e-12));
+    CHECK(at_fraction(there, "deformation", phi, fraction).value == there.value);
+    CHECK(at_fraction(there, "relative_viscosity", phi, {}).value == there.value);
+  }
+  const StudyFraction of_stress{0.2, {{"normal_stress_difference_1", 2}}};
+  CHECK(at_fraction({.value = 0.5, .error = 0.1}, "normal_stress_difference_1", 0.1, of_stress).value == Approx(2).epsilon(1e-12));
+}
+
 TEST_CASE("study: what is wrong is said in a sentence", "[study]") {
   const Folder folder;
   const std::string head = axes + observed;
@@ -86,6 +106,12 @@ TEST_CASE("study: what is wrong is said in a sentence", "[study]") {
       {axes + "[study]\nobservables = [\"deformation\", \"deformation\"]\n" + limit, {"names deformation twice"}},
       {axes + "[study]\nobservables = [3]\n" + limit, {"must be a list of names"}},
       {head + "walllayer = 0\n" + limit, {"walllayer isn't a key of [study]", "the nearest is wall_layer"}},
+      {head + "fraction = 0.2\n" + limit, {"fraction = 0.2 must be a table such as"}},
+      {head + "fraction = { phi = 0.2 }\n" + limit, {"[study.fraction] must be a table such as"}},
+      {head + "fraction = { phi = 1.2, exponents = {} }\n" + limit, {"phi = 1.2 must be > 0 and < 1"}},
+      {head + "fraction = { phi = 0.2, exponents = { inclination = 1 } }\n" + limit, {"inclination is none of the observables: relative_viscosity, deformation"}},
+      {head + "fraction = { phi = 0.2, exponents = { deformation = 11 } }\n" + limit, {"deformation = 11 must be a number between -10 and 10"}},
+      {head + "fraction = { phi = 0.2, exponents = {}, exponent = 1 }\n" + limit, {"exponent isn't a key of [study.fraction]"}},
       {head + "wall_layer = -1\n" + limit, {"wall_layer = -1 must be a number >= 0"}},
       {head, {"[study.reference] is missing", "extrapolate"}},
       {head + "[study.reference]\n", {"exactly one of"}},
