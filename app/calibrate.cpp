@@ -24,9 +24,8 @@ double fluid_seconds(const FluidParameters& parameters, int coupling_every) {
   Fluid<Real> fluid(parameters);
   fluid.initialise();
   return seconds_per_step([&] {
-    if (parameters.needs_force) fluid.scatter_force();
-    fluid.collide_stream_holding_force(coupling_every);
-    if (parameters.needs_force) fluid.gather_velocity();
+    if (parameters.needs_force) fluid.coupled_steps(coupling_every);
+    else fluid.collide_stream();
   }) / coupling_every;
 }
 

@@ -19,6 +19,9 @@ struct LatticeBox {
 };
 inline LatticeBox interior(const Grid& grid) { return {0, grid.nx, 0, grid.ny, 0, grid.nz}; }
 
+/// Whether nodes come in whole rows along x, so that bodies with `enter_row` and `leave_row` get them called.
+constexpr bool loops_over_rows = runs_on_host;
+
 namespace detail {
 template <class Body>
 struct HostRows {
@@ -31,12 +34,14 @@ struct HostRows {
     const int begin = grid.index(box.x0, y, z);
     const int length = box.length();
     const Body local = body;  // a local copy lets the compiler keep pointers in registers
+    if constexpr (requires { local.enter_row(begin, length); }) local.enter_row(begin, length);
     if constexpr (std::is_invocable_v<const Body&, int>) {
 #pragma omp simd
       for (int i = 0; i < length; ++i) local(begin + i);
     } else {
       for (int i = 0; i < length; ++i) local(begin + i, box.x0 + i, y, z);
     }
+    if constexpr (requires { local.leave_row(begin, length); }) local.leave_row(begin, length);
   }
 };
 
@@ -101,7 +106,8 @@ struct RowSums {
 }  // namespace detail
 
 /// Calls body(node) or body(node, x, y, z) for every node of the box, in any order. Bodies must be force-inlined functors and
-/// touch each memory location from one node only; body(node) is vectorised on the host and must not branch.
+/// touch each memory location from one node only; body(node) is vectorised on the host and must not branch. Where `loops_over_rows`,
+/// body.enter_row(first node, length) and body.leave_row(...) are called before and after the nodes of each row, if the body has them.
 template <class Body>
 void lattice_for(const std::string& label, const Grid& grid, const LatticeBox& box, const Body& body) {
   if (box.rows() <= 0 || box.length() <= 0) return;

@@ -48,6 +48,22 @@ struct StreamingAccessor {
       f(StreamingSlots<Parity>::local_slot(p), node) = static_cast<Storage>(g[2 * p + 2]);
     });
   }
+  /// Periodic images along x of the slots that a row of `length` nodes from `first` on reads beyond its ends (ToHalo, before it streams) or has written there (after it): what
+  /// `ExchangePopulations` along x does to the whole lattice, done while the lines are in the cache. Rows have no slot in common, so they need no order.
+  template <bool ToHalo>
+  KOKKOS_FORCEINLINE_FUNCTION void wrap_row(const int first, const int length) const {
+    unroll<D3Q19::pairs>([&](auto p) {
+      constexpr int cx = D3Q19::cx[2 * decltype(p)::value + 1];
+      if constexpr (cx != 0) {
+        constexpr int slot = StreamingSlots<Parity>::neighbour_slot(decltype(p)::value);
+        const int row = first + offsets.along[p] - cx;  // that the neighbours lie in
+        Storage& halo = f(slot, cx > 0 ? row + length : row - 1);
+        Storage& owner = f(slot, cx > 0 ? row : row + length - 1);
+        if constexpr (ToHalo) halo = owner;
+        else owner = halo;
+      }
+    });
+  }
   /// Sets populations before collision (initial state, checkpoints): the inverse of `load`.
   KOKKOS_FORCEINLINE_FUNCTION void set(const int node, const Compute (&g)[19]) const {
     f(0, node) = static_cast<Storage>(g[0]);

@@ -39,9 +39,8 @@ void measure(Section& section, const Variant& v, std::array<int, 3> nodes) {
   const InPlace update(count * sizeof(Real) * (19 + (v.force ? 8 : 0)));
   const auto step = [&] {
     for (int parity = 0; parity < 2; ++parity) {
-      if (v.force) fluid.scatter_force();
-      fluid.collide_stream();
-      if (v.force) fluid.gather_velocity();
+      if (v.force) fluid.coupled_steps(1);
+      else fluid.collide_stream();
     }
   };
   const auto seconds = interleaved_seconds({step, update}, section.effort());

@@ -20,7 +20,7 @@ SOURCES = ["fluid", "coupling", "membrane", "contact", "vertex_motion"]
 
 # Kernel names as the table shows them, in its order: (pattern in the demangled functor, name with groups). Of kernels that share a name (parity of the step, lower and
 # upper wall) the one with most registers is shown. Everything else is not hot: start, sampling, copies.
-FORCING = {"0": "no force", "1": "uniform force", "2": "force field"}
+FORCING = {"0": "no force", "1": "uniform force", "2": "force field", "3": "held force", "4": "held force, velocity", "5": "held force, mean velocity"}
 KERNELS = [
     (r"CollideStream<(\w+), \w+, (\d), \(corpuscle::Forcing\)(\d)", lambda m: f"collide_stream, {FORCING[m[3]]}"),
     (r"ExchangePopulations<(\w+), (\d)", lambda m: "exchange_populations"),

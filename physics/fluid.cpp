@@ -9,6 +9,9 @@
 namespace corpuscle {
 namespace {
 
+/// Bodies that write populations take care of x by themselves where loops go over rows (wrap_row), also on the halo nodes above the upper wall.
+constexpr int first_exchanged = loops_over_rows ? 1 : 0;
+
 /// A stride of k * 4096 bytes would map the same node of all 19 populations to the same cache set (1.3-2x slower); 192 bytes more spread them.
 template <class Storage>
 std::size_t padded_stride(std::size_t nodes) {
@@ -25,6 +28,7 @@ struct SetPopulations {
   double lower, shear_rate, relaxation_time;
   double curvature;   // force/(2 viscosity) of the parabola
   double half_force;  // the populations carry u - F/2
+  KOKKOS_FORCEINLINE_FUNCTION void leave_row(const int first, const int length) const { populations.template wrap_row<false>(first, length); }
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, const int x, const int y, const int z) const {
     const double height = z + 0.5;
     Macroscopic<double> m{0, {lower + shear_rate * height + curvature * height * (nz - height), 0, 0}};
@@ -116,6 +120,7 @@ struct CopyPopulation {
   Accessor populations;
   Array1<Storage> plain;
   int direction, nx, ny;
+  KOKKOS_FORCEINLINE_FUNCTION void leave_row(const int first, const int length) const requires(ToLattice) { populations.template wrap_row<false>(first, length); }
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, const int x, const int y, const int z) const {
     Storage& on_lattice = populations.slot(node, direction);
     Storage& on_plain = plain((z * ny + y) * nx + x);
@@ -150,16 +155,16 @@ Fluid<Storage, Compute>::Fluid(const FluidParameters& parameters)
 
 template <class Storage, class Compute>
 template <int Parity>
-void Fluid<Storage, Compute>::exchange_populations(bool to_halo) {
+void Fluid<Storage, Compute>::exchange_populations(bool to_halo, int first) {
   const auto exchange = [&](int dimension) {
     halo_for("exchange_populations", grid_, dimension, 1, HaloPartner::periodic,
              ExchangePopulations<Storage, Parity>{populations_, dimension, to_halo});
   };
   const int dimensions = parameters_.walls ? 2 : 3;
   if (to_halo)
-    for (int d = 0; d < dimensions; ++d) exchange(d);
+    for (int d = first; d < dimensions; ++d) exchange(d);
   else
-    for (int d = dimensions - 1; d >= 0; --d) exchange(d);
+    for (int d = dimensions - 1; d >= first; --d) exchange(d);
 }
 
 template <class Storage, class Compute>
@@ -175,11 +180,11 @@ void Fluid<Storage, Compute>::bounce_back() {
 template <class Storage, class Compute>
 template <int Parity>
 void Fluid<Storage, Compute>::collide_stream_parity(Forcing field) {
-  exchange_populations<Parity>(true);
+  exchange_populations<Parity>(true, first_exchanged);
   const auto sweep = [&](auto forcing) {
     lattice_for("collide_stream", grid_, interior(grid_),
                 CollideStream<Storage, Compute, Parity, decltype(forcing)::value>{
-                    {populations_, PairOffsets(grid_)}, relaxation_, Compute(parameters_.body_force), force_, velocity_});
+                    {populations_, PairOffsets(grid_)}, relaxation_, Compute(parameters_.body_force), force_, velocity_, grid_.halo});
   };
   if (parameters_.needs_force) {
     switch (field) {
@@ -192,7 +197,7 @@ void Fluid<Storage, Compute>::collide_stream_parity(Forcing field) {
     sweep(std::integral_constant<Forcing, Forcing::uniform>{});
   else
     sweep(std::integral_constant<Forcing, Forcing::none>{});
-  exchange_populations<Parity>(false);
+  exchange_populations<Parity>(false, first_exchanged);
   if (parameters_.walls) bounce_back<Parity>();
 }
 
@@ -218,6 +223,13 @@ void Fluid<Storage, Compute>::collide_stream_holding_force(int steps) {
 }
 
 template <class Storage, class Compute>
+void Fluid<Storage, Compute>::coupled_steps(int steps) {
+  scatter_force_down_to(first_exchanged);
+  collide_stream_holding_force(steps);
+  gather_velocity_from(first_exchanged);
+}
+
+template <class Storage, class Compute>
 void Fluid<Storage, Compute>::set_populations(const std::vector<double>& velocity, double shear_rate) {
   step_ = 0;
   Kokkos::View<double* [3], Kokkos::LayoutRight, MemSpace> on_device("initial_velocity", velocity.size() / 3);
@@ -234,7 +246,7 @@ void Fluid<Storage, Compute>::set_populations(const std::vector<double>& velocit
                                                parameters_.relaxation_time,
                                                parameters_.walls ? parameters_.body_force * 1.5 / (parameters_.relaxation_time - 0.5) : 0.0,
                                                0.5 * parameters_.body_force});
-  exchange_populations<0>(false);
+  exchange_populations<0>(false, first_exchanged);
 }
 
 template <class Storage, class Compute>
@@ -249,8 +261,8 @@ void Fluid<Storage, Compute>::initialise(const std::vector<double>& velocity) {
 }
 
 template <class Storage, class Compute>
-void Fluid<Storage, Compute>::scatter_force() {
-  for (int d = 2; d >= 0; --d) {
+void Fluid<Storage, Compute>::scatter_force_down_to(int last) {
+  for (int d = 2; d >= last; --d) {
     const bool wall = d == 2 && parameters_.walls;
     halo_for("scatter_force", grid_, d, grid_.halo, wall ? HaloPartner::mirror : HaloPartner::periodic,
              ScatterForce<Compute>{force_, Compute(wall ? -1 : 1)});
@@ -258,8 +270,8 @@ void Fluid<Storage, Compute>::scatter_force() {
 }
 
 template <class Storage, class Compute>
-void Fluid<Storage, Compute>::gather_velocity() {
-  for (int d = 0; d < 3; ++d) {
+void Fluid<Storage, Compute>::gather_velocity_from(int first) {
+  for (int d = first; d < 3; ++d) {
     if (d == 2 && parameters_.walls)
       halo_for("gather_velocity", grid_, d, grid_.halo, HaloPartner::mirror,
                ExtendVelocity<Compute>{velocity_, Compute(parameters_.wall_velocity[0]), Compute(parameters_.wall_velocity[1])});
@@ -329,7 +341,7 @@ void Fluid<Storage, Compute>::restore_parity(const std::function<std::vector<Sto
                 CopyPopulation<Storage, Accessor, true>{Accessor{populations_, PairOffsets(grid_)}, plain, q, grid_.nx, grid_.ny});
     Kokkos::fence();  // `values` is gone after this
   }
-  exchange_populations<Parity>(false);
+  exchange_populations<Parity>(false, first_exchanged);
 }
 
 template <class Storage, class Compute>

@@ -51,9 +51,11 @@ class Fluid {
 
   /// Prepares `force()` for the collision: adds what was spread into the halo to the nodes that it stands for. At a wall the halo is the mirror
   /// image with opposite sign (adjoint of the no-slip extension in `gather_velocity`); the difference is a force on the wall.
-  void scatter_force();
+  void scatter_force() { scatter_force_down_to(0); }
   /// Fills the halo of `velocity()`: periodic images, and u(-z) = 2 u_wall - u(z) beyond walls.
-  void gather_velocity();
+  void gather_velocity() { gather_velocity_from(0); }
+  /// `scatter_force`, `collide_stream_holding_force`, `gather_velocity`, with fewer passes: where loops go over rows, each makes its images along x itself.
+  void coupled_steps(int steps);
 
   /// Force along x on the lower and the upper wall (per area) of what has been spread beyond them; call before `scatter_force`.
   std::array<double, 2> wall_force_from_spreading() const;
@@ -89,8 +91,11 @@ class Fluid {
   void collide_stream_with(Forcing field);
   template <int Parity>
   void collide_stream_parity(Forcing field);
+  void scatter_force_down_to(int last);
+  void gather_velocity_from(int first);
+  /// Along the dimensions from `first` on.
   template <int Parity>
-  void exchange_populations(bool to_halo);
+  void exchange_populations(bool to_halo, int first = 0);
   template <int Parity>
   void bounce_back();
   template <int Parity>

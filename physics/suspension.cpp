@@ -155,14 +155,12 @@ class SuspensionOf final : public Suspension {
       compute_forces(cells_->positions(), cells_->forces(), sample ? sampler_.get() : nullptr);
       coupling_->spread(cells_->positions(), cells_->forces(), fluid_.force());
       if (sample && problem_.box.walls) spread_on_walls_ = fluid_.wall_force_from_spreading();
-      fluid_.scatter_force();
-    }
-    fluid_.collide_stream_holding_force(lattice_.coupling_every);
-    if (cells_) {
-      fluid_.gather_velocity();
+      fluid_.coupled_steps(lattice_.coupling_every);
       coupling_->interpolate(motion_->halfway(cells_->positions(), cells_->velocities()), cells_->velocities(), fluid_.velocity());
       if (sample) sampler_->measure_shape(*cells_);
       motion_->advance(cells_->positions(), cells_->velocities(), cells_->forces(), force_operator());
+    } else {
+      fluid_.collide_stream();
     }
     if (sample) finish(*sample);
   }

@@ -138,8 +138,9 @@ VertexMotion::VertexMotion(const std::vector<CellType>& types, VertexUpdate upda
   std::size_t vertex_count = 0;
   for (const auto& type : types) vertex_count += std::size_t(type.count) * type.vertices();
   if (keeps_velocities(update, interval)) {
-    before_ = vectors("previous_velocities", vertex_count);
-    before_that_ = vectors("velocities_before", vertex_count);
+    // Zeros: a checkpoint of the start has them, and equal starts have equal checkpoints.
+    before_ = VertexVectors("previous_velocities", vertex_count);
+    before_that_ = VertexVectors("velocities_before", vertex_count);
   }
   if (interval > 1) halfway_ = vectors("halfway_positions", vertex_count);
   if (update_ != VertexUpdate::chebyshev) return;

@@ -96,7 +96,7 @@ TEST_CASE("study: what is wrong is said in a sentence", "[study]") {
   const std::string head = axes + observed;
   struct Bad {
     std::string text;
-    std::initializer_list<const char*> words;
+    std::vector<const char*> words;
   };
   const std::vector<Bad> wrong{
       {axes, {"[study] is missing", "docs/tradeoff.md"}},
