@@ -8,6 +8,7 @@
 #include "app/calibrate.hpp"
 #include "app/commands.hpp"
 #include "core/types.hpp"
+#include "io/lattice_numbers.hpp"
 #include "io/progress.hpp"
 #include "io/scene.hpp"
 #include "physics/memory.hpp"
@@ -55,50 +56,20 @@ std::vector<ResolutionChoice> alternatives(const Problem& problem) {
 nlohmann::json to_json(const Problem& problem, const LatticeParameters& l, const MemoryEstimate& memory, double seconds, const Calibration& c) {
   nlohmann::json j;
   j["nodes"] = l.nodes;
-  j["radius"] = l.radius;
-  j["relaxation_time"] = l.relaxation_time;
-  j["viscosity"] = l.viscosity;
-  j["shear_rate"] = l.shear_rate;
-  j["wall_velocity"] = l.wall_velocity;
-  j["body_force"] = l.body_force;
-  j["capillary_number"] = l.capillary_number;
-  j["reynolds_number"] = l.reynolds_number;
-  j["mach_number"] = l.mach_number;
-  j["phi_geometric"] = l.phi_geometric;
-  j["phi_nominal"] = l.phi_nominal;
-  j["phi_effective"] = l.phi_effective;
-  j["contact_strength"] = l.contact_strength;
-  j["contact_range"] = l.contact_range;
-  j["membrane_time"] = l.membrane_time;
-  for (const auto& [name, unit] : named_units(l.si)) j[name] = unit;
+  for (const auto& [name, value] : named_numbers(l)) j[name] = value;
   j["steps"] = l.steps;
-  j["steps_per_strain"] = l.steps_per_strain;
   j["series_every_steps"] = l.series_every;
   j["snapshot_every_steps"] = l.snapshot_every;
   j["coupling_every_steps"] = l.coupling_every;
   for (const auto& limit : l.limits) j["limits"].push_back({{"name", limit.name}, {"shear_rate", limit.shear_rate}});
   for (const auto& m : l.margins) j["stability"].push_back({{"name", m.name}, {"value", m.value}, {"limit", m.limit}});
   j["warnings"] = l.warnings;
-  for (const auto& t : l.cells)
-    j["cells"].push_back({{"name", t.name},
-                          {"count", t.count},
-                          {"radius", t.radius},
-                          {"mesh_radius", t.mesh_radius},
-                          {"shell_thickness", t.shell_thickness},
-                          {"effective_radius", t.effective_radius},
-                          {"subdivision", t.subdivision},
-                          {"vertices", t.vertices},
-                          {"faces", t.faces},
-                          {"volume", t.volume},
-                          {"nominal_volume", t.nominal_volume},
-                          {"area", t.area},
-                          {"effective_volume", t.effective_volume},
-                          {"shear_modulus", t.moduli.shear},
-                          {"area_dilation_modulus", t.moduli.area_dilation},
-                          {"bending_modulus", t.moduli.bending},
-                          {"global_area_modulus", t.moduli.global_area},
-                          {"volume_modulus", t.moduli.volume},
-                          {"stretching_force", t.stretching_force}});
+  for (const auto& t : l.cells) {
+    nlohmann::json cells{{"name", t.name}};
+    for (const auto& [name, value] : named_integers(t)) cells[name] = value;
+    for (const auto& [name, value] : named_numbers(t)) cells[name] = value;
+    j["cells"].push_back(cells);
+  }
   j["models"] = active_models(problem, l);
   const ResolutionError resolution = viscosity_resolution_error(problem, l);
   j["viscosity_resolution_error"] = {{"value", resolution.value}, {"uncertainty", resolution.uncertainty}, {"reason", resolution.reason}};

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/lattice_numbers.hpp"
+
 namespace corpuscle {
 namespace {
 
@@ -93,54 +95,18 @@ void write_metadata(hdf5::File& file, const RunMetadata& metadata) {
 
 void write_cell_type(hdf5::File& file, const std::string& group, const CellTypeLattice& type) {
   file.create_group(group);
-  const auto number = [&](const char* name, double value) { file.set_attribute(group, name, value); };
-  const auto integer = [&](const char* name, std::int64_t value) { file.set_attribute(group, name, value); };
   file.set_attribute(group, "name", type.name);
   file.set_attribute(group, "law", type.moduli.law == StrainLawKind::skalak ? "skalak" : "neo_hookean");
-  integer("subdivision", type.subdivision);
-  integer("vertices", type.vertices);
-  integer("faces", type.faces);
-  integer("count", type.count);
-  number("radius", type.radius);
-  number("mesh_radius", type.mesh_radius);
-  number("shell_thickness", type.shell_thickness);
-  number("effective_radius", type.effective_radius);
-  number("volume", type.volume);
-  number("nominal_volume", type.nominal_volume);
-  number("area", type.area);
-  number("effective_volume", type.effective_volume);
-  number("shear_modulus", type.moduli.shear);
-  number("area_dilation_modulus", type.moduli.area_dilation);
-  number("bending_modulus", type.moduli.bending);
-  number("bending_constant", type.moduli.bending_constant);
-  number("global_area_modulus", type.moduli.global_area);
-  number("volume_modulus", type.moduli.volume);
-  number("stretching_force", type.stretching_force);
+  for (const auto& [name, value] : named_integers(type)) file.set_attribute(group, name, value);
+  for (const auto& [name, value] : named_numbers(type)) file.set_attribute(group, name, value);
 }
 
 void write_lattice(hdf5::File& file, const LatticeParameters& lattice) {
   file.create_group("/lattice");
-  const auto number = [&](const char* name, double value) { file.set_attribute("/lattice", name, value); };
   const auto integer = [&](const char* name, std::int64_t value) { file.set_attribute("/lattice", name, value); };
   const std::vector<std::int64_t> nodes(lattice.nodes.begin(), lattice.nodes.end());
   file.set_attribute("/lattice", "nodes", std::span<const std::int64_t>(nodes));
-  number("radius", lattice.radius);
-  number("relaxation_time", lattice.relaxation_time);
-  number("viscosity", lattice.viscosity);
-  number("shear_rate", lattice.shear_rate);
-  number("wall_velocity", lattice.wall_velocity);
-  number("body_force", lattice.body_force);
-  number("capillary_number", lattice.capillary_number);
-  number("reynolds_number", lattice.reynolds_number);
-  number("mach_number", lattice.mach_number);
-  number("phi_geometric", lattice.phi_geometric);
-  number("phi_nominal", lattice.phi_nominal);
-  number("phi_effective", lattice.phi_effective);
-  number("contact_strength", lattice.contact_strength);
-  number("contact_range", lattice.contact_range);
-  number("membrane_time", lattice.membrane_time);
-  for (const auto& [name, unit] : named_units(lattice.si)) number(name, unit);
-  number("steps_per_strain", lattice.steps_per_strain);
+  for (const auto& [name, value] : named_numbers(lattice)) file.set_attribute("/lattice", name, value);
   integer("steps", lattice.steps);
   integer("series_every", lattice.series_every);
   integer("snapshot_every", lattice.snapshot_every);

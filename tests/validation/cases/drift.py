@@ -13,7 +13,7 @@ step (chebyshev), by 10 with the preset reference, whose 100 would take two hour
 whole run. Area also changes elastically: the membrane's area modulus is finite, so the area deviation of a soft cell is no numerical drift;
 its trend (mean of the last tenth minus mean of the second tenth) is stated beside it.
 """
-COST = 40
+COST = 30
 STIFF_CA = 4.2e-5  # the stiffest of Gross et al.
 BOX = (3, 2.5, 4)
 CASES = {  # preset, Ca: strain

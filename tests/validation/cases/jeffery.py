@@ -17,7 +17,7 @@ are too close for a fit. The error of ours is the distance from the largest r to
 stated beside each: at finite r it is larger than that of the mesh, not smaller, so the shell that the kernel adds in [eta] is no layer of
 uniform thickness.
 """
-COST = 20
+COST = 62
 # aspect ratio, radii, Ca_G. A slender body bends: at 0.02 the period of p = 3 is still 5 % longer than at 0.005.
 SHAPES = {"prolate 2": (2.0, (6, 8, 11), 0.02), "prolate 3": (3.0, (8, 10, 12), 0.005), "oblate 0.3235": (0.3235, (6, 8, 11), 0.02)}
 BOX, WIDER = (6, 4, 6), ((8, 6, 8), (12, 8, 12))  # the wider boxes at the smallest radius
