@@ -16,7 +16,8 @@ from kills import SCENE, command, differences, kill_and_resume, start
 STEPS = 2001
 
 
-def check_equal(a, b, what):
+def check_equal(a, b, what, samples=11):
+    """`samples`: at least so many, so that the comparison of statistics means something."""
     different, compared = differences(a, b)
     assert not different, f"{what}: {different}"
     assert compared > 50, compared
@@ -24,7 +25,7 @@ def check_equal(a, b, what):
     for key in x.keys() - {"wall_seconds", "mlups", "threads", "bytes_peak"}:
         assert x[key] == y[key], f"{what}: summary.json: {key}"
     x, y = (json.loads((folder / "statistics.json").read_text()) for folder in (a, b))
-    assert x["run"]["samples"] > 10 and x == y, f"{what}: statistics.json"
+    assert x["run"]["samples"] >= samples and x == y, f"{what}: statistics.json"
     print(f"{what}: {compared} datasets are equal bit for bit")
 
 
@@ -151,7 +152,7 @@ def check_wall_time(program, folder, reference):
     command(program, "resume", output, "--until", f"steps={summary['steps']}")
     once = folder / "until-wall-time"
     command(program, "run", folder / "kills.toml", "--output", once, "--set", packing, "--set", f"run.steps={summary['steps']}", "--set", "run.discard=0", "--threads", 1)
-    check_equal(once, output, f"wall time, twice, until step {summary['steps']}")
+    check_equal(once, output, f"wall time, twice, until step {summary['steps']}", samples=1)  # a slow program doesn't come far
     wrong = command(program, "resume", output, "--wall-time", "90", check=2)
     assert "HH:MM:SS" in wrong.stderr
 
