@@ -38,7 +38,7 @@ def write(name, text, steps=301):
 
 
 def sweep(path, *options, output="out", check=0, **settings):
-    result = subprocess.run([program, "sweep", path, "--output", path.parent / output, *map(str, options)], capture_output=True, text=True, timeout=300, **settings)
+    result = subprocess.run([program, "sweep", path, "--output", path.parent / output, *map(str, options)], capture_output=True, text=True, timeout=1500, **settings)
     expect(result.returncode == check, f"{path.parent.name} {options}: exit code {result.returncode} instead of {check}: {result.stdout}{result.stderr}")
     return result
 

@@ -41,7 +41,7 @@ def spheroid(p, radius, ca, box=BOX):
                 "count": 1,
                 "position": [size / 2 for size in box],
                 "axis": [0.0, 0.0, 1.0],
-                "membrane": stiff_sphere.stiff_membrane(radius),
+                "membrane": stiff_sphere.stiff_membrane(radius, KERNEL),
             }
         ],
         contact={"enabled": False},

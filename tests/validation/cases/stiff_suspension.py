@@ -20,7 +20,7 @@ ASSUMED = 3.4  # [eta] of one sphere, only to choose the number of cells
 
 
 def suspension(phi_h):
-    membrane = stiff_sphere.stiff_membrane(RADIUS)
+    membrane = stiff_sphere.stiff_membrane(RADIUS, KERNEL)
     return scene(
         box={"size": list(BOX)},
         flow={"capillary_number_G": CA, "reynolds_number_max": 0.1},
