@@ -84,6 +84,6 @@ def figures(run, folder):
             )
     axes[0].set(xlabel="strain", ylabel="volume change (%)")
     axes[1].set(xlabel="strain", ylabel="area change (%)")
-    axes[0].legend(fontsize=8)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
     save(figure, folder, "validation_drift.png")
     return [("validation_drift.png", "Volume and area of one red cell over up to 100 units of strain.")]
