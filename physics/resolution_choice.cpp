@@ -17,8 +17,6 @@ constexpr std::array<double, 3> vertex_cost{8.7, 9.2, 10};
 
 }  // namespace
 
-double ResolutionChoice::bound() const { return std::abs(error.value) + error.uncertainty; }
-
 double resolution_cost(const Problem& problem, const LatticeParameters& lattice) {
   const double vertices = vertex_cost.at(std::size_t(problem.accuracy.delta_kernel - 2)) * double(lattice.vertices()) / lattice.coupling_every;
   return lattice.steps_per_strain * (lattice.box_volume() + vertices);
@@ -37,10 +35,14 @@ std::vector<ResolutionChoice> resolution_choices(const Problem& problem) {
     try {
       const LatticeParameters lattice = to_lattice(tried);
       const ResolutionError error = viscosity_resolution_error(tried, lattice);
-      if (error.known()) choices.push_back({radius, delta_kernel, error, resolution_cost(tried, lattice)});
+      if (error.known()) choices.push_back({radius, delta_kernel, error, resolution_cost(tried, lattice), std::abs(error.value) + error.uncertainty});
     } catch (const InputError&) {  // no setting for this scene
     }
   }
+  // `measured` is in the order of the radius.
+  for (auto coarse = choices.rbegin(); coarse != choices.rend(); ++coarse)
+    for (const auto& fine : choices)
+      if (fine.delta_kernel == coarse->delta_kernel && fine.radius > coarse->radius) coarse->bound = std::max(coarse->bound, fine.bound);
   std::stable_sort(choices.begin(), choices.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   return choices;
 }
@@ -48,7 +50,7 @@ std::vector<ResolutionChoice> resolution_choices(const Problem& problem) {
 std::vector<ResolutionChoice> worthwhile(const std::vector<ResolutionChoice>& choices) {
   std::vector<ResolutionChoice> front;
   for (const auto& choice : choices)
-    if (front.empty() || choice.bound() < front.back().bound()) front.push_back(choice);
+    if (front.empty() || choice.bound < front.back().bound) front.push_back(choice);
   return front;
 }
 
@@ -61,11 +63,11 @@ void choose_resolution(Problem& problem, double target, std::optional<double> ra
   std::erase_if(choices, [&](const auto& c) { return (radius && c.radius != *radius) || (delta_kernel && c.delta_kernel != *delta_kernel); });
   if (choices.empty())
     throw InputError(fmt::format("accuracy.target = {:g}: no study has {} = {:g}; remove one of both", target, radius ? "accuracy.radius" : "accuracy.delta_kernel", radius ? *radius : *delta_kernel));
-  const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c.bound() <= target; });
+  const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c.bound <= target; });
   if (chosen == choices.end()) {
-    const auto& best = *std::min_element(choices.begin(), choices.end(), [](const auto& a, const auto& b) { return a.bound() < b.bound(); });
+    const auto& best = *std::min_element(choices.begin(), choices.end(), [](const auto& a, const auto& b) { return a.bound < b.bound; });
     throw InputError(fmt::format("accuracy.target = {:g} is beyond what was measured ({}): the best is {:+.1f} ± {:.1f} %, with radius = {:g} and delta_kernel = {}; give at least {:.3f}, or radius and delta_kernel",
-                                 target, best.error.reason, 100 * best.error.value, 100 * best.error.uncertainty, best.radius, best.delta_kernel, std::ceil(1000 * best.bound()) / 1000));
+                                 target, best.error.reason, 100 * best.error.value, 100 * best.error.uncertainty, best.radius, best.delta_kernel, std::ceil(1000 * best.bound) / 1000));
   }
   problem.accuracy.radius = chosen->radius;
   problem.accuracy.delta_kernel = chosen->delta_kernel;

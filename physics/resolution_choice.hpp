@@ -13,9 +13,8 @@ struct ResolutionChoice {
   double radius = 0;
   int delta_kernel = 0;
   ResolutionError error;
-  double cost = 0;  ///< node updates per unit of strain, vertices counted with what they cost in their place
-  /// What the error stays below, as far as it is known.
-  double bound() const;
+  double cost = 0;   ///< node updates per unit of strain, vertices counted with what they cost in their place
+  double bound = 0;  ///< what the error stays below with this and all finer measured radii of the kernel: a coarse one may be right by accident
 };
 
 /// All measured settings of the scene in ascending order of cost, those left out that the scene can't be run with (limits of stability, shells that overfill the box).

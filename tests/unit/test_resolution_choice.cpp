@@ -39,7 +39,12 @@ TEST_CASE("resolution choice: choices are in the order of their cost, and a fron
   REQUIRE(!front.empty());
   CHECK(front.front().cost == all.front().cost);
   for (const auto& choice : all)
-    CHECK(std::any_of(front.begin(), front.end(), [&](const auto& f) { return f.cost <= choice.cost && f.bound() <= choice.bound(); }));
+    CHECK(std::any_of(front.begin(), front.end(), [&](const auto& f) { return f.cost <= choice.cost && f.bound <= choice.bound; }));
+  for (const auto& coarse : all)
+    for (const auto& fine : all) {
+      CHECK(fine.bound >= std::abs(fine.error.value) + fine.error.uncertainty);
+      if (fine.delta_kernel == coarse.delta_kernel && fine.radius > coarse.radius) CHECK(coarse.bound >= fine.bound);
+    }
   // Twice the radius at the same Reynolds number: 2^3 nodes and 2^2 steps.
   const auto cost = [&](double radius) { return std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.radius == radius && c.delta_kernel == 2; })->cost; };
   CHECK(cost(8) / cost(4) > 20);
@@ -49,10 +54,10 @@ TEST_CASE("resolution choice: choices are in the order of their cost, and a fron
 TEST_CASE("resolution choice: a target chooses the cheapest setting whose error is below it, and the merged scene has that", "[resolution_choice]") {
   const auto all = choices();
   for (const auto& choice : all) {
-    const double target = choice.bound() + 1e-9;
+    const double target = choice.bound + 1e-9;
     if (target > 1) continue;
     const Problem problem = with(fmt::format("target = {}", target));
-    const auto expected = std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.bound() <= target; });
+    const auto expected = std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.bound <= target; });
     CAPTURE(target, choice.radius, choice.delta_kernel);
     CHECK(problem.accuracy.radius == expected->radius);
     CHECK(problem.accuracy.delta_kernel == expected->delta_kernel);
