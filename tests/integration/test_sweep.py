@@ -133,9 +133,12 @@ def test_stop_and_kill():
 
 def test_wall_time():
     path = write("wall", TWO_AXES, steps=20001)
-    begun = time.time()
-    sweep(path, "--jobs", 2, "--threads", 1, "--wall-time", "0:00:08", check=75)
-    expect(time.time() - begun < 40, "the wall time is kept")
+    for seconds in (8, 59):  # with the sanitizers nothing has begun after eight
+        begun = time.time()
+        sweep(path, "--jobs", 2, "--threads", 1, "--wall-time", f"0:00:{seconds:02}", check=75)
+        expect(time.time() - begun < seconds + 32, "the wall time is kept")
+        if "stopped" in states(path).values():
+            break
     expect("stopped" in states(path).values() and not {"running", "failed"} & set(states(path).values()), f"after the wall time: {states(path)}")
     process = subprocess.Popen([program, "sweep", path, "--output", path.parent / "out", "--jobs", "2", "--threads", "1"], stdout=subprocess.PIPE, text=True)
     while not process.stdout.readline().startswith(("starting", "resuming")):
