@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "core/error.hpp"
@@ -39,10 +40,11 @@ std::vector<ResolutionChoice> resolution_choices(const Problem& problem) {
     } catch (const InputError&) {  // no setting for this scene
     }
   }
-  // `measured` is in the order of the radius.
-  for (auto coarse = choices.rbegin(); coarse != choices.rend(); ++coarse)
-    for (const auto& fine : choices)
-      if (fine.delta_kernel == coarse->delta_kernel && fine.radius > coarse->radius) coarse->bound = std::max(coarse->bound, fine.bound);
+  std::map<int, double> largest;  // by kernel; `measured` is in the order of the radius
+  for (auto choice = choices.rbegin(); choice != choices.rend(); ++choice) {
+    double& bound = largest[choice->delta_kernel];
+    choice->bound = bound = std::max(bound, choice->bound);
+  }
   std::stable_sort(choices.begin(), choices.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
   return choices;
 }
