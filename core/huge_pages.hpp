@@ -1,4 +1,5 @@
-// Large arrays of the lattice on huge pages, where the system has them on request: a vertex touches a dozen pages, and their addresses fall out of the caches in a step.
+// Large arrays on huge pages, where the system has them on request: a vertex touches a dozen pages of the lattice, the vertices of a pencil lie on as many as there are, and the
+// addresses of all these pages fall out of the caches in a step.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "core/huge_pages.hpp"
 #include "perf/red_cells.hpp"
 #include "perf/textbook_spread.hpp"
 #include "perf/timing.hpp"
@@ -20,7 +21,8 @@ void measure(Section& section, const std::string& name, const SuspensionCase& c,
   const auto x = cells.positions(), F = cells.forces(), u = cells.velocities();
   Kokkos::deep_copy(F, 1e-4);
   const std::vector<double> forces(c.positions.size(), 1e-4);
-  const VectorField<Real> field("force", grid.padded_nodes()), atomic_field("atomic_force", grid.padded_nodes());
+  const auto field = zeros_on_huge_pages<VectorField<Real>>("force", grid.padded_nodes());  // as in a fluid
+  const auto atomic_field = zeros_on_huge_pages<VectorField<Real>>("atomic_force", grid.padded_nodes());
   std::vector<Real> serial_field(4 * grid.padded_nodes(), Real(0));
   Coupling<Real> coupling(grid, walls, points), atomic(grid, walls, points, SpreadMode::atomic);
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/huge_pages.hpp"
 #include "physics/hydrodynamic_size.hpp"
 
 namespace corpuscle {
@@ -34,9 +35,10 @@ Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) 
   }
   if (positions.size() != 3 * std::size_t(vertex_count_))
     throw std::invalid_argument("Cells: " + std::to_string(positions.size()) + " coordinates for " + std::to_string(vertex_count_) + " vertices");
-  positions_ = to_device(positions, "positions");
-  velocities_ = VertexVectors("velocities", vertex_count_);
-  forces_ = VertexVectors("forces", vertex_count_);
+  positions_ = zeros_on_huge_pages<VertexVectors>("positions", vertex_count_);
+  velocities_ = zeros_on_huge_pages<VertexVectors>("velocities", vertex_count_);
+  forces_ = zeros_on_huge_pages<VertexVectors>("forces", vertex_count_);
+  Kokkos::deep_copy(positions_, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(positions.data(), vertex_count_));
 }
 
 Array1<int> Cells::cell_of_vertex() const {

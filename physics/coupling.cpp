@@ -62,17 +62,29 @@ struct SpreadPencil {
     const int per_row = of_this_colour_y();
     const int pencil = (2 * (i / per_row) + colour_z) * pencils.count_y + 2 * (i % per_row) + colour_y;
     const Grid local_grid = grid;
+    const double* const position = positions.data();
     const double* const force = forces.data();
     Real* const nodes = field.data();
     const int last = begin(pencil + 1);
     StencilBlock<Real, Delta> stencils;
+    // The vertices of a pencil lie all over memory: ask for those of the next block while this one is spread. 24 bytes may lie on two lines.
+    const auto prefetch_vertex = [&](const int i) {
+      if (i >= last) return;
+      const std::size_t at = 3 * std::size_t(order(i));
+      for (const double* const vector : {position + at, force + at}) {
+        __builtin_prefetch(vector);
+        __builtin_prefetch(vector + 2);
+      }
+    };
+    for (int k = 0; k < stencils.size; ++k) prefetch_vertex(begin(pencil) + k);
     for (int first = begin(pencil); first < last; first += stencils.size) {
       const int* const vertices = order.data() + first;
       const int count = last - first < stencils.size ? last - first : stencils.size;
-      stencils.template fill<true>(grid, box, positions.data(), count, 0, vertices);
+      stencils.template fill<true>(grid, box, position, count, 0, vertices);
       for (int k = 0; k < stencils.ahead && k < count; ++k) stencils.prefetch(k, local_grid, nodes);
       for (int k = 0; k < count; ++k) {
         if (k + stencils.ahead < count) stencils.prefetch(k + stencils.ahead, local_grid, nodes);
+        prefetch_vertex(first + k + stencils.size);
         const double* const f = force + 3 * std::size_t(vertices[k]);
         spread_vertex<PlainAdder>(stencils[k], Real(f[0]), Real(f[1]), Real(f[2]), local_grid, nodes);
       }
