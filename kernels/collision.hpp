@@ -41,45 +41,47 @@ KOKKOS_FORCEINLINE_FUNCTION Real along(const Real x, const Real y, const Real z)
 }
 
 /// Relaxes the even and odd part of every pair at their own rate. BGK: both 1/tau. TRT: the odd rate follows from Lambda.
-/// On memory-bound hardware TRT costs what BGK costs (perf/bench_fluid), so that one body serves both.
+/// TRT costs what BGK costs, so that one body serves both.
 template <class Real>
 struct PairRelaxation {
   Real omega_even;
   Real omega_odd;
 
-  static PairRelaxation bgk(double relaxation_time) {
-    return {Real(1.0 / relaxation_time), Real(1.0 / relaxation_time)};
-  }
+  static PairRelaxation bgk(double relaxation_time) { return {rate(1.0 / relaxation_time), rate(1.0 / relaxation_time)}; }
   /// Lambda = (tau+ - 1/2)(tau- - 1/2); 3/16 puts half-way walls exactly half-way.
   static PairRelaxation trt(double relaxation_time, double magic_parameter) {
-    return {Real(1.0 / relaxation_time), Real(1.0 / (0.5 + magic_parameter / (relaxation_time - 0.5)))};
+    return {rate(1.0 / relaxation_time), rate(1.0 / (0.5 + magic_parameter / (relaxation_time - 0.5)))};
   }
+  /// A rate is rounded so that 1 - omega is exact: what relaxation takes from a moment and what it leaves of it add up, at every one of millions of steps.
+  static Real rate(double omega) { return omega < 0.5 ? Real(1) - Real(1 - omega) : Real(omega); }
 
   /// Collides the shifted populations in place. With `Forced` false the force is taken to be zero and costs nothing.
+  ///
+  /// Of a pair with the direction c and the weight w, equilibrium and Guo's source are, multiplied out,
+  ///   even part: w (s + (c.u)(c.v)),   s = omega+ (rho - 1 - 3/2 rho u^2) - 3 (1 - omega+/2) u.F,   v = 9/2 omega+ rho u + 9 (1 - omega+/2) F
+  ///   odd part:  w c.t,                t = 3 omega- rho u + 3 (1 - omega-/2) F
+  /// so that a node computes s, v and t once and a pair little: collision under a force is limited by arithmetic (docs/performance.md).
   template <bool Forced>
   KOKKOS_FORCEINLINE_FUNCTION void collide(Real (&g)[19], const Macroscopic<Real>& m, const Real fx, const Real fy, const Real fz) const {
     const Real rho = Real(1) + m.density_shift;
     const Real ux = m.u[0], uy = m.u[1], uz = m.u[2];
-    const Real speed_term = m.density_shift - Real(1.5) * rho * (ux * ux + uy * uy + uz * uz);
-    const Real half_even = Real(1) - Real(0.5) * omega_even;
-    const Real half_odd = Real(1) - Real(0.5) * omega_odd;
-    const Real power = Forced ? half_even * Real(3) * (ux * fx + uy * fy + uz * fz) : Real(0);
-
-    constexpr Real w0 = Real(D3Q19::rest_weight);
-    g[0] += omega_even * (w0 * speed_term - g[0]) - w0 * power;
+    const Real of_even = Real(4.5) * omega_even * rho, of_odd = Real(3) * omega_odd * rho;
+    Real s = omega_even * (m.density_shift - Real(1.5) * rho * (ux * ux + uy * uy + uz * uz));
+    Real vx = of_even * ux, vy = of_even * uy, vz = of_even * uz;
+    Real tx = of_odd * ux, ty = of_odd * uy, tz = of_odd * uz;
+    if constexpr (Forced) {
+      const Real half_even = Real(3) - Real(1.5) * omega_even, half_odd = Real(3) - Real(1.5) * omega_odd;
+      s -= half_even * (ux * fx + uy * fy + uz * fz);
+      vx += Real(3) * half_even * fx, vy += Real(3) * half_even * fy, vz += Real(3) * half_even * fz;
+      tx += half_odd * fx, ty += half_odd * fy, tz += half_odd * fz;
+    }
+    const Real keep_even = Real(0.5) * (Real(1) - omega_even), keep_odd = Real(0.5) * (Real(1) - omega_odd);
+    g[0] = (Real(1) - omega_even) * g[0] + Real(D3Q19::rest_weight) * s;
     unroll<D3Q19::pairs>([&](auto p) {
       constexpr int a = 2 * decltype(p)::value + 1;
       constexpr Real w = Real(D3Q19::weight(a));
-      const Real cu = along<a>(ux, uy, uz);
-      Real even = Real(0.5) * (g[a] + g[a + 1]);
-      Real odd = Real(0.5) * (g[a] - g[a + 1]);
-      even += omega_even * (w * (speed_term + Real(4.5) * rho * cu * cu) - even);
-      odd += omega_odd * (w * Real(3) * rho * cu - odd);
-      if constexpr (Forced) {
-        const Real cf = along<a>(fx, fy, fz);
-        even += w * (half_even * Real(9) * cu * cf - power);
-        odd += w * half_odd * Real(3) * cf;
-      }
+      const Real even = keep_even * (g[a] + g[a + 1]) + w * (s + along<a>(ux, uy, uz) * along<a>(vx, vy, vz));
+      const Real odd = keep_odd * (g[a] - g[a + 1]) + w * along<a>(tx, ty, tz);
       g[a] = even + odd;
       g[a + 1] = even - odd;
     });

@@ -17,6 +17,14 @@ struct StreamingSlots {
   static constexpr int neighbour_slot(int pair) { return 2 * pair + (Parity == 0 ? 1 : 2); }
 };
 
+/// Distance in memory between two populations of a node. A stride of k * 4096 bytes would map the same node of all 19 populations to the same cache set (1.3-2x slower); 192 bytes more spread them.
+template <class Storage>
+constexpr std::size_t population_stride(std::size_t nodes) {
+  const std::size_t page = 4096 / sizeof(Storage), shift = 192 / sizeof(Storage);
+  const std::size_t pages = nodes > shift ? (nodes - shift + page - 1) / page : 0;
+  return pages * page + shift;
+}
+
 /// Distances in memory to the neighbours along the first direction of each pair.
 struct PairOffsets {
   int along[D3Q19::pairs];

@@ -27,7 +27,7 @@ LAUNCHES = 19  # a step with walls and contacts on a device (perf/bench_kernels 
 
 def fluid(real, forced):
     """One node: populations read and written in place; with cells the force read and cleared, the velocity written."""
-    return dict(bytes=2 * 19 * real + (3 * 4 * real if forced else 0), flops=330 if forced else 250, double=real == 8)
+    return dict(bytes=2 * 19 * real + (3 * 4 * real if forced else 0), flops=230 if forced else 201, double=real == 8)
 
 
 def spread(points, real):

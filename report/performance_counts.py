@@ -3,7 +3,7 @@
 Additions, multiplications, divisions and square roots count one each. Bytes are what must move between memory and core at least once; what stays in a
 cache between two uses counts once.
 
-collide (a node): macroscopic moments 47, equilibrium and relaxation of rest and nine pairs 172; Guo force 83 more. 19 populations read and written; with a
+collide (a node): macroscopic moments 47, equilibrium and relaxation of rest and nine pairs 154; Guo force 29 more. 19 populations read and written; with a
     force field 4 numbers read and cleared, 4 velocities written.
 spread (a marker), w-point kernel: weights 60, row 4w, w^2 rows of one weight and 4w multiply-adds. Position and force (48 bytes), key and order (12); each
     force node read and written once, shared by the markers of the box.
@@ -15,7 +15,7 @@ membrane (a vertex): two triangles with 94 for strain, 17 for global tension and
 
 def collide(real, force):
     """(flops, bytes) a node; real: bytes of a number."""
-    return 219 + (83 if force else 0), real * (38 + (12 if force else 0))
+    return 201 + (29 if force else 0), real * (38 + (12 if force else 0))
 
 
 def spread(points, real, nodes_per_marker):
