@@ -141,6 +141,8 @@ double stiffness_load(const StiffnessLimits& limits, double edge, double shear, 
   return std::max({sum, shear / at_edge(limits.shear_alone, edge), dilation / at_edge(limits.dilation_alone, edge)});
 }
 
+double crowding_pressure(double phi_effective, double capillary_number) { return (1 + 42 * phi_effective) * std::pow(capillary_number, -0.4); }
+
 double volume_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.area / (2 * speed_of_sound * cell.volume); }
 double area_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.squared_curvature / (2 * speed_of_sound); }
 double volume_modulus(const CellTypeLattice& cell, double response) { return response / volume_response(cell, 1); }
@@ -188,6 +190,13 @@ void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
                                               problem.accuracy.mach_max, lattice.relaxation_time, 0.999 * limit);
       refuse_unstable(problem, lattice, message);
     }
+  }
+  if (!lattice.cells.empty() && lattice.shear_rate > 0) {
+    const double density = 3 * eta * lattice.shear_rate * crowding_pressure(lattice.phi_effective, lattice.capillary_number);
+    const std::string way_out = "lower accuracy.relaxation_time or accuracy.shear_modulus, or give the cells more room";
+    add("density of the fluid between cells", density, problem.guards.density, way_out);
+    if (density > problem.guards.density * (1 + 1e-8))  // a modulus that the scene fixes: the bound is a cautious one, so that this is no reason to refuse
+      lattice.warnings.push_back(fmt::format("Cells may compress the fluid until guards.density = {} ends the run (docs/stability.md, Compression): {}", problem.guards.density, way_out));
   }
   for (std::size_t i = 0; i < lattice.cells.size(); ++i) {
     const CellTypeLattice& cell = lattice.cells[i];

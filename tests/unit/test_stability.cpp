@@ -107,6 +107,37 @@ TEST_CASE("Near tau = 1/2 a Mach number beyond the fluid's limit is refused, and
   CHECK(complaint_lacks([&] { to_lattice(problem); }, {}) == "no InputError");
 }
 
+TEST_CASE("Crowded cells that would compress the fluid beyond the guard limit the shear rate, with a large relaxation time first", "[stability]") {
+  const auto chosen = [](double relaxation_time, double density = 0.2, double shear_rate = 0) {
+    Problem problem = red_cells();
+    problem.box.size = {5, 5, 6};
+    problem.flow.capillary_number = 0.05;
+    problem.flow.reynolds_number_max = 0.1;
+    problem.cells[0].count.reset();
+    problem.cells[0].effective_volume_fraction = 0.75;
+    problem.accuracy.radius = 4;
+    problem.accuracy.collision = CollisionKind::trt;
+    problem.accuracy.relaxation_time = relaxation_time;
+    problem.guards.density = density;
+    if (shear_rate > 0) problem.accuracy.shear_rate = shear_rate;
+    return to_lattice(problem);
+  };
+  const auto compression = [](const LatticeParameters& l) {
+    return 3 * l.viscosity * l.shear_rate * crowding_pressure(l.phi_effective, l.capillary_number);
+  };
+  const LatticeParameters slow = chosen(1), fast = chosen(2.5);
+  CHECK(slow.limits.front().name == "reynolds_number_max");
+  CHECK(compression(slow) < stability_margin * 0.2);
+  CHECK(fast.limits.front().name == "compression of the fluid");
+  CHECK(compression(fast) == Approx(stability_margin * 0.2));
+  CHECK(compression(chosen(2.5, 0.1)) == Approx(stability_margin * 0.1));
+  CHECK(complaint_lacks([&] { chosen(2.5, 0.2, 1.3 * fast.shear_rate); }, {"accuracy.shear_rate", "compression of the fluid"}) == "");
+  // Measured (docs/stability.md): 43 red cells, largest deviation of the density over 3 eta_0 gamma_dot.
+  CHECK(crowding_pressure(0.876, 0.08) > 97);
+  CHECK(crowding_pressure(0.810, 0.008) > 178);
+  CHECK(crowding_pressure(0.876, 0.0008) > 631);
+}
+
 TEST_CASE("Chosen settings stay within the margin for every kernel, update and relaxation time", "[stability]") {
   Problem problem = red_cells();
   for (const auto update : {VertexUpdate::averaged, VertexUpdate::euler})
