@@ -55,4 +55,13 @@ void halo_for(const std::string& label, const Grid& grid, int dimension, int lay
                        detail::HaloLines<Body>{grid, dimension, layers, partner, u0, u_count, v0, body});
 }
 
+/// The same for the periodic images along x of one row, `length` nodes from `first` on: for bodies that go over rows and do it while the row is in the cache.
+template <class Body>
+KOKKOS_FORCEINLINE_FUNCTION void halo_of_row(const int first, const int length, const int layers, const Body& body) {
+  for (int layer = 0; layer < layers; ++layer) {
+    body(first - 1 - layer, first + length - 1 - layer, -1);
+    body(first + length + layer, first + layer, +1);
+  }
+}
+
 }  // namespace corpuscle

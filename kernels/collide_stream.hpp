@@ -1,5 +1,6 @@
 // One time step of the lattice Boltzmann equation on a node, in place.
 #pragma once
+#include "core/halo.hpp"
 #include "kernels/collision.hpp"
 #include "kernels/streaming.hpp"
 #include "kernels/vector_halo.hpp"
@@ -33,18 +34,11 @@ struct CollideStream {
   /// Where loops go over rows these make their own periodic images along x, while the lines are in the cache; elsewhere passes over the halo do.
   KOKKOS_FORCEINLINE_FUNCTION void enter_row(const int first, const int length) const {
     populations.template wrap_row<true>(first, length);
-    if constexpr (reads_field(forcing)) for_images(first, length, ScatterForce<Compute>{force, Compute(1)});
+    if constexpr (reads_field(forcing)) halo_of_row(first, length, halo, ScatterForce<Compute>{force, Compute(1)});
   }
   KOKKOS_FORCEINLINE_FUNCTION void leave_row(const int first, const int length) const {
     populations.template wrap_row<false>(first, length);
-    if constexpr (writes_velocity(forcing)) for_images(first, length, GatherVelocity<Compute>{velocity});
-  }
-  template <class Body>
-  KOKKOS_FORCEINLINE_FUNCTION void for_images(const int first, const int length, const Body& body) const {
-    for (int layer = 0; layer < halo; ++layer) {
-      body(first - 1 - layer, first + length - 1 - layer, -1);
-      body(first + length + layer, first + layer, +1);
-    }
+    if constexpr (writes_velocity(forcing)) halo_of_row(first, length, halo, GatherVelocity<Compute>{velocity});
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node) const {
