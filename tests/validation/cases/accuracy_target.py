@@ -13,7 +13,7 @@ is longer: what the program chooses for a target, several packings, is compared 
 and the error that is stated for that one. Numbers of cells are whole, so all viscosities are taken to phi_eff = 0.32 with
 eta_r - 1 ~ phi^1.5, between the exponents of both studies.
 """
-COST = 12
+COST = 6
 PHI, CA, BOX, STRAIN, SETTLED, EXPONENT = 0.32, 0.03, (6, 4.5, 6), 20, 5, 1.5
 TARGETS, SEEDS, FINEST = (0.2, 0.12), (1, 2, 3, 4), 9
 
