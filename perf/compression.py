@@ -80,7 +80,7 @@ def main():
                     break
                 value, lattice = pressure(run)
                 found.append(value)
-            print(f"| {lattice['phi_effective']:.3f} | {kernel} | {ca:g} | {np.median(found):.0f} | {max(found):.0f} | {(1 + 42 * lattice['phi_effective']) * ca**-0.4:.0f} |", flush=True)
+            print(f"| {lattice['phi_effective']:.3f} | {kernel} | {ca:g} | {np.median(found):.0f} | {max(found):.0f} | {5 + 50 * lattice['phi_effective'] ** 1.5 * ca**-0.4:.0f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -141,7 +141,7 @@ double stiffness_load(const StiffnessLimits& limits, double edge, double shear, 
   return std::max({sum, shear / at_edge(limits.shear_alone, edge), dilation / at_edge(limits.dilation_alone, edge)});
 }
 
-double crowding_pressure(double phi_effective, double capillary_number) { return (1 + 42 * phi_effective) * std::pow(capillary_number, -0.4); }
+double crowding_pressure(double phi_effective, double capillary_number) { return 5 + 50 * std::pow(phi_effective, 1.5) * std::pow(capillary_number, -0.4); }
 
 double volume_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.area / (2 * speed_of_sound * cell.volume); }
 double area_response(const CellTypeLattice& cell, double modulus) { return modulus * cell.squared_curvature / (2 * speed_of_sound); }
