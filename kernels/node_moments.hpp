@@ -31,7 +31,7 @@ struct SetPopulations {
   }
 };
 
-/// Moments of the present populations; what: 0 density, 1..3 momentum, 4 squared speed.
+/// Moments of the present populations; what: 0 density, 1..3 momentum.
 template <class Storage, int Parity>
 struct NodeMoment {
   StreamingAccessor<Storage, double, Parity> populations;

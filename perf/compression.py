@@ -9,6 +9,7 @@ checkpoints every quarter of a strain unit, with tau = 1, where d is small; show
 """
 
 import argparse
+import json
 import pathlib
 import subprocess
 import sys
@@ -23,13 +24,10 @@ SCENE = """
 [box]
 size = [5, 5, 6]
 [flow]
-capillary_number = 0.08
 reynolds_number_max = 0.1
 [[cells]]
-effective_volume_fraction = 0.45
 [accuracy]
 radius = 4
-delta_kernel = 2
 collision = "trt"
 [run]
 strain = 0.5
@@ -57,6 +55,13 @@ def pressure(run):
     return np.abs(density - density.mean()).max() / 3 / (lattice["viscosity"] * lattice["shear_rate"]), lattice
 
 
+def bound(program, run, lattice):
+    """What the program allows p* to be in this scene."""
+    plan = json.loads(subprocess.run([program, "plan", str(run / "scene.toml"), "--threads", "1", "--json"], capture_output=True, text=True, check=True).stdout)
+    density = next(margin["value"] for margin in plan["stability"] if margin["name"] == "density of the fluid between cells")
+    return density / 3 / (lattice["viscosity"] * lattice["shear_rate"])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -80,7 +85,7 @@ def main():
                     break
                 value, lattice = pressure(run)
                 found.append(value)
-            print(f"| {lattice['phi_effective']:.3f} | {kernel} | {ca:g} | {np.median(found):.0f} | {max(found):.0f} | {5 + 50 * lattice['phi_effective'] ** 1.5 * ca**-0.4:.0f} |", flush=True)
+            print(f"| {lattice['phi_effective']:.3f} | {kernel} | {ca:g} | {np.median(found):.0f} | {max(found):.0f} | {bound(arguments.program, run, lattice):.0f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,14 @@
 
 usage: perf/gpu_roofline.py        prints Markdown tables
 
-Bytes and atomics follow from kernels/; operations are counted there for membranes and rounded estimates elsewhere. Whoever changes a kernel changes its line here.
+Bytes and atomics follow from kernels/; operations of collision and membranes are counted in report/performance_counts.py, the others are rounded estimates. Whoever changes a kernel
+changes its line here or there.
 """
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
+import performance_counts as counts  # noqa: E402
 
 # Nominal figures of the vendors. Bandwidth (GB/s): NVIDIA A100 80GB and H100 SXM data sheets; AMD MI250X data sheet and CDNA2 white paper, half of it for one
 # GCD. Peaks without matrix units (Tflop/s). Atomics (1e9 additions to scattered addresses a second): one a clock for each slice of L2, 80 at 1.41 GHz, 96 at 1.7 GHz
@@ -27,7 +33,8 @@ LAUNCHES = 19  # a step with walls and contacts on a device (perf/bench_kernels 
 
 def fluid(real, forced):
     """One node: populations read and written in place; with cells the force read and cleared, the velocity written."""
-    return dict(bytes=2 * 19 * real + (3 * 4 * real if forced else 0), flops=230 if forced else 201, double=real == 8)
+    flops, moved = counts.collide(real, forced)
+    return dict(bytes=moved, flops=flops, double=real == 8)
 
 
 def spread(points, real):
@@ -43,7 +50,8 @@ def interpolate(points, real):
 def membrane(real, bending):
     """One vertex: position read, force written; tables are shared by all cells and stay in L2. Two triangles with 9 additions to shared memory and, with bending, three
     edges with 12."""
-    return dict(bytes=2 * 24, flops=2 * 141 + (3 * 158 if bending else 0), shared=18 + (36 if bending else 0), double=real == 8)
+    flops, moved = counts.membrane(bending, True)
+    return dict(bytes=moved, flops=flops, shared=18 + (36 if bending else 0), double=real == 8)
 
 
 def contact(neighbours=4):

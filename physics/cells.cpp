@@ -35,10 +35,9 @@ Cells::Cells(std::vector<CellType> types, const std::vector<double>& positions) 
   }
   if (positions.size() != 3 * std::size_t(vertex_count_))
     throw std::invalid_argument("Cells: " + std::to_string(positions.size()) + " coordinates for " + std::to_string(vertex_count_) + " vertices");
-  positions_ = zeros_on_huge_pages<VertexVectors>("positions", vertex_count_);
+  positions_ = to_device(positions, "positions");
   velocities_ = zeros_on_huge_pages<VertexVectors>("velocities", vertex_count_);
   forces_ = zeros_on_huge_pages<VertexVectors>("forces", vertex_count_);
-  Kokkos::deep_copy(positions_, Kokkos::View<const double* [3], Kokkos::LayoutRight, Kokkos::HostSpace>(positions.data(), vertex_count_));
 }
 
 Array1<int> Cells::cell_of_vertex() const {

@@ -43,7 +43,7 @@ class ShearRateChoice {
       for (const auto& [name, modulus] : smallest_limits()) add_stability(name, rate_per_modulus * modulus);
       if (kappa > 0) fixed("shear_modulus", kappa, rate_per_modulus * kappa);
     }
-    if (cells) add_stability("compression of the fluid", p_.guards.density / (3 * eta * crowding_pressure(l_.phi_effective, ca_)));
+    if (cells) add_stability("compression of the fluid", p_.guards.density / crowding_density(l_.phi_effective, ca_, eta, 1));
     if (p_.accuracy.shear_rate) fixed("shear_rate", *p_.accuracy.shear_rate, *p_.accuracy.shear_rate);
     std::stable_sort(l_.limits.begin(), l_.limits.end(), [](const auto& a, const auto& b) { return a.shear_rate < b.shear_rate; });
     if (!fixed_by_.empty()) {  // it may exceed the next limit by rounding, or lie in the margin of stability

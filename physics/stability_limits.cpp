@@ -192,7 +192,7 @@ void set_stability_margins(const Problem& problem, LatticeParameters& lattice) {
     }
   }
   if (!lattice.cells.empty() && lattice.shear_rate > 0) {
-    const double density = 3 * eta * lattice.shear_rate * crowding_pressure(lattice.phi_effective, lattice.capillary_number);
+    const double density = crowding_density(lattice.phi_effective, lattice.capillary_number, eta, lattice.shear_rate);
     const std::string way_out = "lower accuracy.relaxation_time or accuracy.shear_modulus, or give the cells more room";
     add("density of the fluid between cells", density, problem.guards.density, way_out);
     if (density > problem.guards.density * (1 + 1e-8))  // a modulus that the scene fixes: the bound is a cautious one, so that this is no reason to refuse

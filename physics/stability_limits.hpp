@@ -30,9 +30,13 @@ double stable_response(const AccuracySpec& accuracy);
 /// phi_eff = 0.9, Ca = 0.028, r = 4 the mean of (2H)^2 grew to 2.9 times that of the reference, at phi_geo = 0.4, Ca = 0.1, r = 8 to 2.4 times, within some strain units.
 inline constexpr double curvature_growth = 3;
 inline double stable_area_response(const AccuracySpec& accuracy) { return stable_response(accuracy) / curvature_growth; }
-/// Pressure of the fluid between crowded cells over eta_0 gamma_dot: an upper bound of what was measured (docs/stability.md, Compression; `perf/compression.py`). The pressure compresses
-/// the fluid, whose density then differs from 1 by 3 eta_0 gamma_dot times this.
+
+/// Pressure of the fluid between crowded cells over eta_0 gamma_dot: an upper bound of what was measured (docs/stability.md, Compression; `perf/compression.py`).
 double crowding_pressure(double phi_effective, double capillary_number);
+/// By how much this pressure, c_s^2 = 1/3 times the deviation, makes the density of the fluid differ from 1.
+inline double crowding_density(double phi_effective, double capillary_number, double viscosity, double shear_rate) {
+  return 3 * viscosity * shear_rate * crowding_pressure(phi_effective, capillary_number);
+}
 
 /// Mean edges in lattice units for which limits were measured.
 inline constexpr double finest_edge = 0.4, coarsest_edge = 2.5;

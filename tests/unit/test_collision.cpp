@@ -72,7 +72,7 @@ double largest_difference(const std::array<double, 19>& a, const std::array<doub
 
 }  // namespace
 
-TEST_CASE("collision relaxes and forces as the textbook does") {
+TEST_CASE("Collision relaxes and forces as the textbook does", "[collision]") {
   for (const double tau : {0.51, 0.6, 1.0, 2.0, 7.0})
     for (const bool trt : {false, true})
       for (unsigned seed = 1; seed < 6; ++seed) {
@@ -89,7 +89,7 @@ TEST_CASE("collision relaxes and forces as the textbook does") {
 }
 
 // A rate that isn't the complement of what is kept would add up to 3e-8 of mass and momentum at each step, of one sign as far as rounding doesn't swallow it.
-TEST_CASE("what collision takes from a moment and what it leaves add up in single precision") {
+TEST_CASE("What collision takes from a moment and what it leaves add up in single precision", "[collision]") {
   for (int i = 0; i < 2000; ++i) {
     const double omega = 0.001 * (i + 1) * 0.99937;
     const float rate = PairRelaxation<float>::rate(omega), kept = 1.0f - rate;
@@ -99,7 +99,7 @@ TEST_CASE("what collision takes from a moment and what it leaves add up in singl
   }
 }
 
-TEST_CASE("a million collisions in single precision keep mass and momentum") {
+TEST_CASE("A million collisions in single precision keep mass and momentum", "[collision]") {
   for (const double tau : {0.51, 0.6, 3.7, 9.3}) {
     CAPTURE(tau);
     const auto relaxation = PairRelaxation<float>::trt(tau, 3.0 / 16);

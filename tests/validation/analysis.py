@@ -67,3 +67,8 @@ def block_error(values, blocks=8):
     """Standard error of the mean of a correlated series, from the scatter of the means of its blocks."""
     means = np.array([block.mean() for block in np.array_split(np.asarray(values), blocks)])
     return means.std(ddof=1) / np.sqrt(blocks)
+
+
+def error_of_seeds(values, errors):
+    """Standard error of the mean of repeats with other seeds: from their scatter or from their own errors, whichever is larger."""
+    return max(np.std(values, ddof=1), np.sqrt(np.mean(np.square(errors)))) / np.sqrt(len(values))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis import block_error
+from analysis import block_error, error_of_seeds
 from rows import Row
 from simulations import scene, seconds
 
@@ -69,7 +69,7 @@ def rows(run):
         mine = {seed: results[target, seed] for seed in SEEDS}
         values, errors = zip(*(viscosity(result) for result in mine.values()))
         value = np.mean(values)
-        error = max(np.std(values, ddof=1), np.sqrt(np.mean(np.square(errors)))) / np.sqrt(len(SEEDS))
+        error = error_of_seeds(values, errors)
         chosen = mine[SEEDS[0]].summary["viscosity_resolution_error_reason"]
         shift, known = stated(mine[SEEDS[0]])
         out.append(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis import block_error
+from analysis import block_error, error_of_seeds
 from rows import Row
 from simulations import scene, seconds, stokes_accuracy
 
@@ -52,7 +52,7 @@ def rows(run):
         phi = results["dilute", target, SEEDS[0]].lattice["phi_geometric"]
         phis.append(phi)
         per_phi.append(np.mean(means) / phi)
-        errors.append(max(np.std(means, ddof=1), np.sqrt(np.mean(np.square(inside)))) / np.sqrt(len(SEEDS)) / phi)
+        errors.append(error_of_seeds(means, inside) / phi)
     slope = (per_phi[1] - per_phi[0]) / (phis[1] - phis[0])
     limit = per_phi[0] - slope * phis[0]
     error = np.hypot(errors[0] * phis[1], errors[1] * phis[0]) / (phis[1] - phis[0])
