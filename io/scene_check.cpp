@@ -32,6 +32,7 @@ class Checker {
     files();
     meaningless();
     target();
+    relaxation_time();
   }
 
  private:
@@ -202,10 +203,7 @@ class Checker {
       fail("accuracy.target", fmt::format("{} leaves nothing to choose with {} and {}: remove one of the three", said_target, said("accuracy.radius"), said("accuracy.delta_kernel")));
     if (has("accuracy.subdivision"))
       fail("accuracy.target", fmt::format("{} contradicts {}: errors were measured with the default mesh; remove one of both", said_target, said("accuracy.subdivision")));
-    if (!has("accuracy.collision") && !has("accuracy.magic_parameter") && !has("accuracy.relaxation_time")) {
-      p_.accuracy.collision = CollisionKind::trt;
-      p_.accuracy.relaxation_time = studied_relaxation_time;
-    }
+    if (chooses_relaxation_time()) p_.accuracy.relaxation_time = studied_relaxation_time;
     const double wanted = *p_.accuracy.target;
     p_.accuracy.target.reset();
     try {
@@ -214,6 +212,13 @@ class Checker {
     } catch (const InputError& error) {
       fail("accuracy.target", error.what());
     }
+  }
+
+  /// With BGK the shell of a cell depends on it: 1, as problem.hpp has it, where shells were measured.
+  bool chooses_relaxation_time() const { return !has("accuracy.relaxation_time") && p_.accuracy.collision == CollisionKind::trt; }
+
+  void relaxation_time() {
+    if (chooses_relaxation_time()) p_.accuracy.relaxation_time = relaxation_time_of_fewest_steps(p_);
   }
 
   void files() {

@@ -25,7 +25,7 @@ const std::vector<std::vector<std::string_view>> alternatives = {
     {"cells.*.shape", "cells.*.file"},
 };
 /// What an override of the preset takes over from the file: without this `--set accuracy.preset=draft` had no effect on a merged scene.
-constexpr std::array<std::string_view, 6> preset_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "precision"};
+constexpr std::array<std::string_view, 7> preset_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "relaxation_time", "precision"};
 constexpr std::array<std::string_view, 6> target_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "relaxation_time"};
 
 bool valid_utf8(std::string_view text) {

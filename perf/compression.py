@@ -28,7 +28,7 @@ reynolds_number_max = 0.1
 [[cells]]
 [accuracy]
 radius = 4
-collision = "trt"
+relaxation_time = 1.0
 [run]
 strain = 0.5
 [output]

@@ -31,7 +31,9 @@ membrane = { law = "neo_hookean", bending = 0.0 }
 enabled = false
 [accuracy]
 radius = 5
+delta_kernel = 3
 collision = "trt"
+relaxation_time = 1.0
 mach_max = 0.3
 [run]
 strain = 4
@@ -49,7 +51,9 @@ reynolds_number_max = 1
 [[cells]]
 effective_volume_fraction = 0.4
 [accuracy]
-preset = "draft"
+radius = 5
+delta_kernel = 3
+collision = "bgk"
 mach_max = 0.3
 [run]
 strain = 8
@@ -65,8 +69,9 @@ capillary_number = 4.2e-5
 [[cells]]
 count = 12
 [accuracy]
-preset = "draft"
 radius = 6
+delta_kernel = 3
+collision = "bgk"
 vertex_update = "chebyshev"
 membrane_precision = "single"
 shear_modulus = 4

@@ -18,6 +18,8 @@ reynolds_number_max = 0.2
 count = 12
 [accuracy]
 radius = 6
+delta_kernel = 3
+collision = "bgk"
 allow_unstable = true
 [output]
 series_every = 0.002

@@ -89,10 +89,10 @@ struct AccuracySpec {
   std::optional<double> target;              ///< error of the viscosity that radius and kernel are chosen for; not set once they are (physics/resolution_choice.hpp)
   double radius = 8;                         ///< r in lattice units
   std::optional<int> subdivision;            ///< frequency n of the geodesic icosahedron; default: nearest to the radius
-  int delta_kernel = 3;                      ///< 2 | 3 | 4 points
-  CollisionKind collision = CollisionKind::bgk;
+  int delta_kernel = 2;                      ///< 2 | 3 | 4 points
+  CollisionKind collision = CollisionKind::trt;
   double magic_parameter = 3.0 / 16.0;       ///< Lambda of TRT
-  double relaxation_time = 1.0;              ///< tau; viscosity = (tau - 1/2)/3
+  double relaxation_time = 1.0;              ///< tau; viscosity = (tau - 1/2)/3. A scene that gives none with TRT gets relaxation_time_of_fewest_steps()
   Precision precision = Precision::single_precision;            ///< populations, force and velocity fields
   Precision membrane_precision = Precision::double_precision;   ///< membrane forces (positions are always double)
   VertexUpdate vertex_update = VertexUpdate::averaged;

@@ -32,12 +32,12 @@ void set_fluid(const Problem& problem, LatticeParameters& lattice) {
     throw InputError(fmt::format("accuracy.relaxation_time = {} must be a number >= 0.505 (below it the fluid is unstable) and <= 5 (above it inaccurate); the nearest allowed value is {}",
                                  tau, tau > 5 ? 5 : 0.505));
   }
-  lattice.radius = problem.accuracy.radius;
   lattice.relaxation_time = tau;
   lattice.viscosity = (tau - 0.5) / 3;
 }
 
 void set_box(const Problem& problem, LatticeParameters& lattice) {
+  lattice.radius = problem.accuracy.radius;
   double total = 1;
   for (int d = 0; d < 3; ++d) {
     const double size = problem.box.size[d];
@@ -248,6 +248,37 @@ LatticeParameters to_lattice(const Problem& problem) {
   set_stability_margins(problem, lattice);
   set_duration(problem, lattice);
   return lattice;
+}
+
+double relaxation_time_of_fewest_steps(Problem problem) {
+  constexpr int largest = 20, smallest = 10;  // tenths
+  constexpr double little_compression = 0.05;
+  LatticeParameters shape;
+  try {
+    set_box(problem, shape);
+    set_cells(problem, shape);  // shells of TRT don't depend on tau
+  } catch (const InputError&) {
+    return largest / 10.0;  // to_lattice() will tell
+  }
+  double best = largest / 10.0, least = std::numeric_limits<double>::infinity();
+  for (int tenths = largest; tenths >= smallest; --tenths) {
+    problem.accuracy.relaxation_time = tenths / 10.0;
+    try {
+      LatticeParameters lattice = shape;
+      set_fluid(problem, lattice);
+      const double kappa = choose_shear_rate(problem, lattice);
+      double steps = lattice.shear_rate > 0 ? 1 / lattice.shear_rate : kappa > 0 ? lattice.viscosity * lattice.radius / kappa : 1;
+      if (kappa > 0 && lattice.shear_rate > 0) steps = std::max(steps, crowding_density(lattice.phi_effective, lattice.capillary_number, lattice.viscosity, 1) / little_compression);
+      if (steps < least * (1 - 1e-9)) {
+        least = steps;
+        best = problem.accuracy.relaxation_time;
+      } else if (std::isfinite(least)) {
+        break;  // a limit that rises with tau has taken over from one that falls
+      }
+    } catch (const InputError&) {  // beyond a limit with this one
+    }
+  }
+  return best;
 }
 
 }  // namespace corpuscle

@@ -105,4 +105,9 @@ struct LatticeParameters {
 /// @throws InputError when a number can't be met (names the key, the value, the allowed range and what to do).
 LatticeParameters to_lattice(const Problem& problem);
 
+/// The relaxation time, in tenths between 1 and 2, with which the scene takes the fewest time steps. Steps per strain fall as 1/(tau - 1/2) at a fixed Reynolds number, but rise with tau
+/// where the stiffness of membranes decides. A rate at which crowded cells compress the fluid by more than 5 % counts as that of 5 %: volumes of cells suffer with it. With TRT viscosity and
+/// deformation don't depend on tau in this range (docs/accuracy.md). Its own relaxation time doesn't matter; 2 where the scene can't be run with any of them, or takes as many steps with all.
+double relaxation_time_of_fewest_steps(Problem problem);
+
 }  // namespace corpuscle

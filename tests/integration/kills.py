@@ -25,6 +25,7 @@ relative_radius = 0.6
 count = 2
 [accuracy]
 radius = 4
+relaxation_time = 1.0
 [run]
 steps = {steps}
 [output]

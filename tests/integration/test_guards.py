@@ -19,6 +19,8 @@ capillary_number = 0.05
 count = 6
 [accuracy]
 radius = 4
+relaxation_time = 1.0
+delta_kernel = 3
 [run]
 steps = 400
 [output]

@@ -27,6 +27,7 @@ position = [2, 2, 2]
 enabled = false
 [accuracy]
 radius = 4
+relaxation_time = 1.0
 delta_kernel = 2
 [run]
 strain = 1.5

@@ -62,7 +62,7 @@ TEST_CASE("resolution choice: a target chooses the cheapest setting whose error 
     CHECK(problem.accuracy.radius == expected->radius);
     CHECK(problem.accuracy.delta_kernel == expected->delta_kernel);
     CHECK(problem.accuracy.collision == CollisionKind::trt);
-    CHECK(problem.accuracy.relaxation_time == studied_relaxation_time);
+    CHECK(problem.accuracy.relaxation_time == relaxation_time_of_fewest_steps(problem));
     CHECK_FALSE(problem.accuracy.target);
     const ResolutionError error = viscosity_resolution_error(problem, to_lattice(problem));
     CHECK(std::abs(error.value) + error.uncertainty <= target);

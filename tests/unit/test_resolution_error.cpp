@@ -67,7 +67,7 @@ TEST_CASE("resolution error: what wasn't measured isn't claimed", "[resolution_e
   CHECK(reason(fraction, r + "\nshell_thickness = 0.3").find("default accuracy.shell_thickness") != std::string::npos);
   CHECK(reason("count = 1", r).find("suspensions") != std::string::npos);
   CHECK(reason(fraction, "radius = 2.5\ndelta_kernel = 3").find("no study") != std::string::npos);
-  const Problem bgk = parse_scene("[box]\nsize = [10, 10, 12]\n[flow]\ncapillary_number = 0.08\n[[cells]]\n" + fraction + "\n[accuracy]\n" + r + "\nrelaxation_time = 2.0\n", "s.toml");
+  const Problem bgk = parse_scene("[box]\nsize = [10, 10, 12]\n[flow]\ncapillary_number = 0.08\n[[cells]]\n" + fraction + "\n[accuracy]\n" + r + "\ncollision = \"bgk\"\nrelaxation_time = 2.0\n", "s.toml");
   CHECK(viscosity_resolution_error(bgk, to_lattice(bgk)).reason.find("TRT") != std::string::npos);
   const Problem fluid = parse_scene("[box]\nsize = [4, 4, 4]\n", "s.toml");
   CHECK(viscosity_resolution_error(fluid, to_lattice(fluid)).reason == "there are no cells");

@@ -75,17 +75,31 @@ TEST_CASE("The defaults of problem.hpp are the standard preset", "[scene]") {
 TEST_CASE("Presets set knobs, and a knob given beside a preset wins wherever it stands", "[scene]") {
   const Problem reference = parse_scene("[accuracy]\nradius = 10\npreset = \"reference\"", "s.toml");
   CHECK(reference.accuracy.radius == 10);
-  CHECK(reference.accuracy.delta_kernel == 4);
+  CHECK(reference.accuracy.delta_kernel == 2);
   CHECK(reference.accuracy.collision == CollisionKind::trt);
-  CHECK(reference.accuracy.precision == Precision::double_precision);
+  CHECK(parse_scene("[accuracy]\ndelta_kernel = 4\nprecision = \"double\"\npreset = \"reference\"", "s.toml").accuracy.delta_kernel == 4);
   const Problem draft = parse_scene("[accuracy]\npreset = \"draft\"", "s.toml");
-  CHECK(draft.accuracy.radius == 5);
-  CHECK(draft.accuracy.delta_kernel == 3);
+  CHECK(draft.accuracy.radius == 4);
+  CHECK(draft.accuracy.precision == Precision::single_precision);
   // On the command line the preset takes the knobs of the file with it, else it would change nothing in a merged scene.
-  const Problem overridden = parse_scene(to_toml(reference), "s.toml", {"accuracy.preset=draft", "accuracy.precision=double"});
-  CHECK(overridden.accuracy.radius == 5);
-  CHECK(overridden.accuracy.collision == CollisionKind::bgk);
+  const Problem coarse = parse_scene("[accuracy]\npreset = \"reference\"\ncollision = \"bgk\"\ndelta_kernel = 3\nrelaxation_time = 0.8", "s.toml");
+  const Problem overridden = parse_scene(to_toml(coarse), "s.toml", {"accuracy.preset=draft", "accuracy.precision=double"});
+  CHECK(overridden.accuracy.radius == 4);
+  CHECK(overridden.accuracy.delta_kernel == 2);
+  CHECK(overridden.accuracy.collision == CollisionKind::trt);
+  CHECK(overridden.accuracy.relaxation_time == 2);
   CHECK(overridden.accuracy.precision == Precision::double_precision);
+}
+
+TEST_CASE("A scene with TRT and no relaxation time gets the one of fewest steps, and the merged scene has it", "[scene]") {
+  const auto tau = [](const std::string& accuracy, const std::vector<std::string>& overrides = {}) { return parse_scene(std::string(simple) + accuracy, "s.toml", overrides).accuracy.relaxation_time; };
+  CHECK(tau("") == 2);
+  CHECK(tau("[accuracy]\ncollision = \"trt\"\n") == 2);
+  CHECK(tau("[accuracy]\nrelaxation_time = 1.3\n") == 1.3);
+  CHECK(tau("[accuracy]\ncollision = \"bgk\"\n") == 1);
+  CHECK(tau("", {"flow.capillary_number=0.0005"}) == 1);
+  const Problem stiff = parse_scene(simple, "s.toml", {"flow.capillary_number=0.0005"});
+  CHECK(parse_scene(to_toml(stiff), "merged.toml", {"run.strain=1"}).accuracy.relaxation_time == 1);
 }
 
 TEST_CASE("Overrides change, add and replace alternatives", "[scene]") {

@@ -142,7 +142,7 @@ const std::vector<Bad> bad = {
     {no_count + "count = 1\nposition = [5, 5, 0.1]\n", {"cells.0.position = [5, 5, 0.1]", "wall", ">= 0.3"}},
     {cells + "aspect_ratio = 0.5\n", {"cells.0.aspect_ratio = 0.5", "spheroid"}},
     {cells + "membrane = { law = \"neo_hookean\", area_dilation = 3 }\n", {"cells.0.membrane.area_dilation = 3", "skalak"}},
-    {box + "[accuracy]\nmagic_parameter = 0.1\n", {"accuracy.magic_parameter = 0.1", "trt"}},
+    {box + "[accuracy]\ncollision = \"bgk\"\nmagic_parameter = 0.1\n", {"accuracy.magic_parameter = 0.1", "trt"}},
     {box + "[accuracy]\nshear_modulus = 0.1\n", {"accuracy.shear_modulus = 0.1", "[[cells]]"}},
     {cells + "name = \"a/b\"\n", {"cells.0.name = \"a/b\"", "letters"}},
     {cells + "name = \"a\"\n[[cells]]\nname = \"a\"\ncount = 1\n", {"cells.1.name = \"a\"", "unique"}},

@@ -211,6 +211,43 @@ TEST_CASE("Durations in steps", "[units]") {
   CHECK(to_lattice(problem).steps == 5000000000);
 }
 
+TEST_CASE("The relaxation time of fewest steps: 2 where the Reynolds number decides, less where stiffness does", "[units]") {
+  const auto steps = [](Problem problem, double tau) {
+    problem.accuracy.relaxation_time = tau;
+    return to_lattice(problem).steps_per_strain;
+  };
+  Problem problem = paper();
+  problem.flow.capillary_number = 0.081;
+  CHECK(relaxation_time_of_fewest_steps(problem) == 2);
+  bool between = false;
+  for (const double ca : {0.02, 0.01, 0.005, 0.002, 0.001, 1e-4}) {
+    problem.flow.capillary_number = ca;
+    const double chosen = relaxation_time_of_fewest_steps(problem);
+    CAPTURE(ca, chosen);
+    for (int tenths = 10; tenths <= 20; ++tenths) CHECK(steps(problem, chosen) <= steps(problem, tenths / 10.0) * (1 + 1e-12));
+    between = between || (chosen > 1 && chosen < 2);
+  }
+  CHECK(between);
+  CHECK(relaxation_time_of_fewest_steps(problem) == 1);
+}
+
+TEST_CASE("The relaxation time of fewest steps passes over those that a given modulus is too stiff for", "[units]") {
+  Problem problem = paper();
+  problem.flow.capillary_number = 0.001;
+  const auto allowed = [&](double tau) {
+    problem.accuracy.relaxation_time = tau;
+    return refusal(problem) == "accepted";
+  };
+  problem.accuracy.shear_modulus = 0.1;
+  CHECK(relaxation_time_of_fewest_steps(problem) == 1);  // the less viscous the fluid, the faster the flow of this capillary number
+  problem.accuracy.shear_modulus = 0.3;
+  REQUIRE_FALSE(allowed(2));
+  REQUIRE(allowed(1));
+  CHECK(allowed(relaxation_time_of_fewest_steps(problem)));
+  problem.accuracy.shear_modulus = 9;
+  CHECK(relaxation_time_of_fewest_steps(problem) == 2);
+}
+
 TEST_CASE("Both of shear modulus and shear rate state the capillary number", "[units]") {
   Problem problem = paper();
   problem.accuracy.shear_modulus = 0.003;

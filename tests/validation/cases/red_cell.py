@@ -26,7 +26,7 @@ def cell(ca):
         flow={"capillary_number": ca, "reynolds_number_max": RE},
         cells=[{"shape": "red_cell", "count": 1, "position": [size / 2 for size in BOX], "axis": [0.0, 0.0, 1.0]}],
         contact={"enabled": False},
-        accuracy={"preset": "standard", "radius": RADIUS, "collision": "trt", "relaxation_time": TAU, "mach_max": 0.3},
+        accuracy={"radius": RADIUS, "relaxation_time": TAU, "mach_max": 0.3},
         run={"strain": STRAIN},
         output={"series_every": 0.05, "snapshot_every": 0.5},
     )
