@@ -42,7 +42,7 @@ def viscosity(result):
 
 def work(result):
     """Node updates, a vertex counted with its time."""
-    nodes, vertices = np.prod(result.lattice["nodes"]), result.summary["cells"] * result.cell_type["vertices"]
+    nodes, vertices = np.prod(result.lattice["nodes"]), result.cell_type["count"] * result.cell_type["vertices"]
     return result.summary["steps"] * float(nodes + VERTEX_COST * vertices)
 
 
@@ -51,7 +51,7 @@ def rows(run):
     means = {}
     for preset, seeds in SEEDS.items():
         values, errors = zip(*(viscosity(results[preset, seed]) for seed in seeds))
-        means[preset] = np.mean(values), error_of_seeds(values, errors)
+        means[preset] = np.mean(values), error_of_seeds(values, errors) if len(seeds) > 1 else errors[0]
     finest = results["reference", 1].summary
     shift, known = finest["viscosity_resolution_error"], finest["viscosity_resolution_error_uncertainty"]
     limit = means["reference"][0] / (1 + shift)
