@@ -100,15 +100,17 @@ def yield_stress(sweep, tally):
     return Drawn(figure, "A yield stress appears above φ_c ≈ 0.66.", seen)
 
 
+def cells_and_bulk(sweep, tally, rows, quantity=""):
+    """A grid of (name, label, value of a run) against Ca and phi, and the range of each in words."""
+    figure, _ = grid_against(sweep, [(label, value_of) for _, label, value_of in rows], tally)
+    spans = [(name, value_range([value_of(r) for r in sweep.runs])) for name, _, value_of in rows]
+    return figure, [f"{name}: {quantity}{span[0]:.3g} to {span[1]:.3g}." for name, span in spans if span]
+
+
 def stress_fluctuations(sweep, tally):
-    rows = [(r"single cells: RMS$(\sigma)/\langle\sigma\rangle$", lambda r: r.estimate("stress_fluctuation")),
-            (r"bulk: RMS$(\sigma)/\langle\sigma\rangle$", lambda r: r.estimate("bulk_stress_fluctuation"))]
-    figure, _ = grid_against(sweep, rows, tally)
-    seen = []
-    for name, (_, value_of) in zip(("cells", "bulk"), rows):
-        span = value_range([value_of(r) for r in sweep.runs])
-        if span:
-            seen.append(f"{name.capitalize()}: {span[0]:.3g} to {span[1]:.3g}.")
+    figure, seen = cells_and_bulk(sweep, tally, [
+        ("Cells", r"single cells: RMS$(\sigma)/\langle\sigma\rangle$", lambda r: r.estimate("stress_fluctuation")),
+        ("Bulk", r"bulk: RMS$(\sigma)/\langle\sigma\rangle$", lambda r: r.estimate("bulk_stress_fluctuation"))])
     seen.append("The fluctuation of the bulk's average falls with the number of cells in it; that of single cells does not.")
     return Drawn(figure, "Relative fluctuations of the shear stress against Ca and φ.", seen)
 
@@ -139,17 +141,13 @@ def stress_correlations(sweep, tally):
 
 
 def stress_relaxation(sweep, tally):
-    rows = [(r"bulk: $\tau_\sigma\dot\gamma$", lambda r: r.estimate("stress_relaxation_time")),
-            (r"single cells: $\tau_\sigma\dot\gamma$", lambda r: r.estimate("stresslet_relaxation_time"))]
-    figure, _ = grid_against(sweep, rows, tally)
-    seen = []
-    for name, (_, value_of) in zip(("bulk", "single cells"), rows):
-        span = value_range([value_of(r) for r in sweep.runs])
-        if span:
-            seen.append(f"{name.capitalize()}: τ_σγ̇ from {span[0]:.3g} to {span[1]:.3g}.")
+    rows = [("Bulk", r"bulk: $\tau_\sigma\dot\gamma$", lambda r: r.estimate("stress_relaxation_time")),
+            ("Single cells", r"single cells: $\tau_\sigma\dot\gamma$", lambda r: r.estimate("stresslet_relaxation_time"))]
+    figure, seen = cells_and_bulk(sweep, tally, rows, "τ_σγ̇ from ")
+    for name, _, value_of in rows:
         fit = power_law([r.phi for r in sweep.runs], [value_of(r) for r in sweep.runs]) if len(sweep.phis) > 2 else None
         if fit:
-            seen.append(f"All Ca together, τ_σγ̇ ~ φ^{value_text(fit[0].value, fit[0].error)}.")
+            seen.append(f"{name}, all Ca together: τ_σγ̇ ~ φ^{value_text(fit[0].value, fit[0].error)}.")
     return Drawn(figure, "Relaxation time of the stress in units of 1/γ̇, against φ and Ca.", seen)
 
 
