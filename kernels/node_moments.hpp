@@ -46,6 +46,30 @@ struct NodeMoment {
   }
 };
 
+KOKKOS_FORCEINLINE_FUNCTION constexpr int alternating(const int dimension, const int x, const int y, const int z) {
+  return (dimension == 0 ? x : dimension == 1 ? y : z) % 2 == 0 ? 1 : -1;
+}
+
+/// Momentum along a direction, its sign turned at every second node along this direction.
+template <class Storage, int Parity>
+struct StaggeredMoment {
+  NodeMoment<Storage, Parity> momentum;
+  int dimension;
+  KOKKOS_FORCEINLINE_FUNCTION double operator()(const int node, const int x, const int y, const int z) const {
+    return alternating(dimension, x, y, z) * momentum(node, x, y, z);
+  }
+};
+
+template <class Real>
+struct AddStaggeredForce {
+  VectorField<Real> force;
+  int dimension;
+  Real amplitude;
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(const int node, const int x, const int y, const int z) const {
+    force(node, dimension) += Real(alternating(dimension, x, y, z)) * amplitude;
+  }
+};
+
 template <class Storage, int Parity, class Out>
 struct NodeVelocity {
   StreamingAccessor<Storage, double, Parity> populations;

@@ -255,6 +255,26 @@ std::array<double, 3> Fluid<Storage, Compute>::momentum() const {
 }
 
 template <class Storage, class Compute>
+std::array<double, 3> Fluid<Storage, Compute>::staggered_momentum() const {
+  std::array<double, 3> mean{};
+  with_accessor([&](auto accessor, auto parity) {
+    for (int k = 0; k < (parameters_.walls ? 2 : 3); ++k) {
+      if (parameters_.nodes[k] % 2 != 0) continue;
+      const NodeMoment<Storage, decltype(parity)::value> momentum{accessor, parameters_.body_force, k + 1};
+      mean[k] = lattice_sum("staggered_momentum", grid_, interior(grid_), StaggeredMoment<Storage, decltype(parity)::value>{momentum, k}) / double(grid_.nodes());
+    }
+  });
+  return mean;
+}
+
+template <class Storage, class Compute>
+void Fluid<Storage, Compute>::remove_staggered_momentum() {
+  const auto mean = staggered_momentum();
+  for (int k = 0; k < 3; ++k)
+    if (mean[k] != 0) lattice_for("staggered_force", grid_, interior(grid_), AddStaggeredForce<Compute>{force_, k, Compute(-mean[k])});
+}
+
+template <class Storage, class Compute>
 void Fluid<Storage, Compute>::count_broken(double density, double speed, const DeviceCount& count) const {
   with_accessor([&](auto accessor, auto parity) {
     constexpr int P = decltype(parity)::value;

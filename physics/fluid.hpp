@@ -57,6 +57,12 @@ class Fluid {
   /// `scatter_force`, `collide_stream_holding_force`, `gather_velocity`, with fewer passes: where loops go over rows, each makes its images along x itself.
   void coupled_steps(int steps);
 
+  /// Mean over the nodes of (-1)^x j_x, (-1)^y j_y, (-1)^z j_z. Collisions and streaming turn their signs at each step and damp none of them: no part of a flow, but what rounding and spread forces
+  /// leave there stays. Zero along directions with an odd number of nodes or with walls, where nothing of the kind is kept.
+  std::array<double, 3> staggered_momentum() const;
+  /// Adds the force that takes the staggered momentum away in the coming step; after spreading, before `coupled_steps(1)`.
+  void remove_staggered_momentum();
+
   /// Force along x on the lower and the upper wall (per area) of what has been spread beyond them; call before `scatter_force`.
   std::array<double, 2> wall_force_from_spreading() const;
   /// Viscous shear stress sigma_xz on the lower and upper wall in the last step, by momentum exchange.
