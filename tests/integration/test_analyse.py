@@ -21,8 +21,9 @@ reynolds_number_max = 0.4
 [[cells]]
 effective_volume_fraction = 0.25
 [accuracy]
-preset = "draft"
 radius = 4
+delta_kernel = 3
+collision = "bgk"
 [run]
 strain = 4
 [output]
