@@ -24,9 +24,8 @@ const std::vector<std::vector<std::string_view>> alternatives = {
     {"run.strain", "run.steps", "run.duration"},
     {"cells.*.shape", "cells.*.file"},
 };
-/// What an override of the preset takes over from the file: without this `--set accuracy.preset=draft` had no effect on a merged scene.
-constexpr std::array<std::string_view, 7> preset_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "relaxation_time", "precision"};
-constexpr std::array<std::string_view, 6> target_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "relaxation_time"};
+/// What an override of the preset or the target takes over from the file (the preset the precision, too): without this `--set accuracy.preset=draft` had no effect on a merged scene.
+constexpr std::array<std::string_view, 6> resolution_knobs = {"radius", "subdivision", "delta_kernel", "collision", "magic_parameter", "relaxation_time"};
 
 bool valid_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
@@ -183,10 +182,9 @@ void drop_replaced(Document& document) {
         if (other != pattern) drop(other.starts_with("cells.") ? section + std::string(other.substr(other.rfind('.') + 1)) : std::string(other));
       }
     }
-    if (pattern == "accuracy.preset")
-      for (const std::string_view knob : preset_knobs) drop(section + std::string(knob));
-    if (pattern == "accuracy.target")
-      for (const std::string_view knob : target_knobs) drop(section + std::string(knob));
+    if (pattern == "accuracy.preset" || pattern == "accuracy.target")
+      for (const std::string_view knob : resolution_knobs) drop(section + std::string(knob));
+    if (pattern == "accuracy.preset") drop(section + "precision");
   }
 }
 

@@ -70,5 +70,18 @@ def block_error(values, blocks=8):
 
 
 def error_of_seeds(values, errors):
-    """Standard error of the mean of repeats with other seeds: from their scatter or from their own errors, whichever is larger."""
-    return max(np.std(values, ddof=1), np.sqrt(np.mean(np.square(errors)))) / np.sqrt(len(values))
+    """Standard error of the mean of repeats with other seeds: from their scatter or from their own errors, whichever is larger. A single one has no scatter."""
+    scatter = np.std(values, ddof=1) if len(values) > 1 else 0.0
+    return max(scatter, np.sqrt(np.mean(np.square(errors)))) / np.sqrt(len(values))
+
+
+def viscosity_at(result, phi, exponent, settled):
+    """Mean relative viscosity beyond the strain `settled`, taken from the run's phi_eff to `phi` with eta_r - 1 ~ phi^exponent, and its statistical error."""
+    series = result.series("relative_viscosity")[result.series("strain") > settled]
+    to_phi = (phi / result.summary["phi_effective"]) ** exponent
+    return 1 + (series.mean() - 1) * to_phi, block_error(series) * to_phi
+
+
+def stated_resolution(result):
+    """What the run's summary says about its resolution: relative error of the viscosity and its uncertainty."""
+    return result.summary["viscosity_resolution_error"], result.summary["viscosity_resolution_error_uncertainty"]

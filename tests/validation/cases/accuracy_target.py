@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analysis import block_error, error_of_seeds
+from analysis import error_of_seeds, stated_resolution, viscosity_at
 from rows import Row
 from simulations import scene, seconds
 
@@ -37,14 +37,7 @@ def scenes():
 
 def viscosity(result):
     """eta_r at PHI and its statistical error."""
-    series = result.series("relative_viscosity")[result.series("strain") > SETTLED]
-    to_phi = (PHI / result.summary["phi_effective"]) ** EXPONENT
-    return 1 + (series.mean() - 1) * to_phi, block_error(series) * to_phi
-
-
-def stated(result):
-    """What the run's summary says about its resolution: relative error of the viscosity and its uncertainty."""
-    return result.summary["viscosity_resolution_error"], result.summary["viscosity_resolution_error_uncertainty"]
+    return viscosity_at(result, PHI, EXPONENT, SETTLED)
 
 
 def limit(results):
@@ -52,7 +45,7 @@ def limit(results):
     values, errors, known = [], [], []
     for kernel in (2, 3):
         value, error = viscosity(results["finest", kernel])
-        shift, uncertainty = stated(results["finest", kernel])
+        shift, uncertainty = stated_resolution(results["finest", kernel])
         values.append(value / (1 + shift))
         errors.append(error / value)
         known.append(uncertainty)
@@ -71,7 +64,7 @@ def rows(run):
         value = np.mean(values)
         error = error_of_seeds(values, errors)
         chosen = mine[SEEDS[0]].summary["viscosity_resolution_error_reason"]
-        shift, known = stated(mine[SEEDS[0]])
+        shift, known = stated_resolution(mine[SEEDS[0]])
         out.append(
             Row(
                 "accuracy_target",

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from analysis import block_error, error_of_seeds
+from analysis import error_of_seeds, stated_resolution, viscosity_at
 from rows import Row
 from simulations import seconds
 
@@ -35,9 +35,7 @@ def scenes():
 
 def viscosity(result):
     """eta_r at PHI and its statistical error."""
-    series = result.series("relative_viscosity")[result.series("strain") > SETTLED]
-    to_phi = (PHI / result.summary["phi_effective"]) ** EXPONENT
-    return 1 + (series.mean() - 1) * to_phi, block_error(series) * to_phi
+    return viscosity_at(result, PHI, EXPONENT, SETTLED)
 
 
 def work(result):
@@ -51,16 +49,15 @@ def rows(run):
     means = {}
     for preset, seeds in SEEDS.items():
         values, errors = zip(*(viscosity(results[preset, seed]) for seed in seeds))
-        means[preset] = np.mean(values), error_of_seeds(values, errors) if len(seeds) > 1 else errors[0]
-    finest = results["reference", 1].summary
-    shift, known = finest["viscosity_resolution_error"], finest["viscosity_resolution_error_uncertainty"]
+        means[preset] = np.mean(values), error_of_seeds(values, errors)
+    shift, known = stated_resolution(results["reference", 1])
     limit = means["reference"][0] / (1 + shift)
     uncertainty = known + means["reference"][1] / means["reference"][0]
     out = []
     for preset, seeds in SEEDS.items():
         mine = {seed: results[preset, seed] for seed in seeds}
         value, error = means[preset]
-        summary = mine[1].summary
+        off, give_or_take = stated_resolution(mine[1])
         out.append(
             Row(
                 "presets",
@@ -71,7 +68,7 @@ def rows(run):
                 CLAIMED[preset] + uncertainty + 2 * error / value,
                 "the claim, the uncertainty of the limit, and 2 standard errors",
                 error=error,
-                settings=f"stated {100 * summary['viscosity_resolution_error']:+.0f} ± {100 * summary['viscosity_resolution_error_uncertainty']:.0f} %; seeds {seeds}",
+                settings=f"stated {100 * off:+.0f} ± {100 * give_or_take:.0f} %; seeds {seeds}",
                 seconds=seconds(mine),
             )
         )
