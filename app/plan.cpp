@@ -144,7 +144,9 @@ void print(const Problem& problem, const LatticeParameters& l, const MemoryEstim
   if (!l.cells.empty()) {
     fmt::print("Fraction    {:.4f} geometric, ", l.phi_geometric);
     if (problem.accuracy.cell_size == CellSize::hydrodynamic) fmt::print("{:.4f} nominal, ", l.phi_nominal);
-    fmt::print("{:.4f} effective\n", l.phi_effective);
+    fmt::print("{:.4f} effective", l.phi_effective);
+    if (l.cells[0].counted_shell != l.cells[0].shell_thickness) fmt::print(" (shell of the viscosity: {:.3g})", l.cells[0].counted_shell);
+    fmt::print("\n");
   }
   print_si(l);
   bool first = true;

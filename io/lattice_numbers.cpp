@@ -27,6 +27,7 @@ NamedNumbers named_numbers(const CellTypeLattice& t) {
   return {{"radius", t.radius},
           {"mesh_radius", t.mesh_radius},
           {"shell_thickness", t.shell_thickness},
+          {"counted_shell", t.counted_shell},
           {"effective_radius", t.effective_radius},
           {"volume", t.volume},
           {"nominal_volume", t.nominal_volume},

@@ -86,6 +86,8 @@ const Key table[] = {
      "By how much a cell is hydrodynamically larger than its mesh, for φ_eff and `cell_size`"},
     {"accuracy.cell_size", CORPUSCLE_FIELD(P.accuracy.cell_size), any, "mesh|hydrodynamic", "", "",
      "Which surface has the nominal radius: the mesh, or the one a shell outside of it; the mesh then lies a shell inside"},
+    {"accuracy.counted_shell", CORPUSCLE_FIELD(P.accuracy.counted_shell), any, "viscosity|drag", "", "",
+     "Shell of a cell in φ_eff: with that of the viscosity, suspensions have the viscosity of φ_eff whatever the resolution; that of the drag is thinner"},
     {"accuracy.shear_modulus", CORPUSCLE_FIELD(P.accuracy.shear_modulus), positive(10), "", "lattice units",
      "largest that all limits allow (rest: at most η₀/4)", "κ_S; fixes the shear rate through Ca"},
     {"accuracy.shear_rate", CORPUSCLE_FIELD(P.accuracy.shear_rate), positive(1), "", "1 / time step", "largest that all limits allow", "γ̇ (at the wall for poiseuille)"},
@@ -163,6 +165,9 @@ bool applies(const Key& key, const Problem& problem, const CellSpec& cell, std::
     if (problem.cells.empty()) return only_if(false, "[[cells]]");
     return only_if(problem.accuracy.shell_thickness != 0.0, "a shell (accuracy.shell_thickness > 0, or none given)");
   }
+  if (key.name == "accuracy.counted_shell")
+    return only_if(!problem.accuracy.shell_thickness && (problem.accuracy.cell_size == CellSize::mesh || problem.accuracy.counted_shell == CountedShell::drag),
+                   "cell_size = \"mesh\", and no accuracy.shell_thickness");
   if (key.name == "run.duration" || key.section() == "si") return only_if(!problem.cells.empty(), "[[cells]]");
   if (key.name == "accuracy.shear_rate" || key.name == "output.checkpoint_strain")
     return only_if(problem.flow.kind != FlowKind::rest, "a flow (flow.kind isn't \"rest\")");

@@ -18,7 +18,7 @@ namespace corpuscle::scene {
 /// Where a key's value lives in a Problem; its type is the key's type.
 using Field = std::variant<bool*, int*, std::optional<int>*, std::optional<std::int64_t>*, std::uint64_t*, double*, std::optional<double>*,
                            std::array<double, 3>*, std::optional<std::array<double, 3>>*, std::string*, FlowKind*, ShapeKind*, StrainLawKind*,
-                           CollisionKind*, Precision*, VertexUpdate*, CellSize*>;
+                           CollisionKind*, Precision*, VertexUpdate*, CellSize*, CountedShell*>;
 
 /// Allowed interval of a number (of every component of a triple).
 struct Range {

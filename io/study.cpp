@@ -132,7 +132,7 @@ class StudyReader {
       });
     };
     for (const SweepPoint& point : study_.sweep.points)
-      for (const Override& o : point.overrides) {
+      for (const Override& o : std::span(point.overrides).first(point.given)) {  // what a [[where]] adds, such as a length, belongs to its point
         if (o.key == seed || in_axis(o.key) || std::find(study_.knobs.begin(), study_.knobs.end(), o.key) != study_.knobs.end()) continue;
         study_.knobs.push_back(o.key);
         axis_of.push_back(nullptr);

@@ -67,7 +67,7 @@ class SweepReader {
 
     const std::vector<std::string> names = sweep_names(named_);
     check_names(names);
-    for (std::size_t i = 0; i < given_.size(); ++i) sweep.points.push_back({names[i], given_[i]});
+    for (std::size_t i = 0; i < given_.size(); ++i) sweep.points.push_back({names[i], given_[i], given_[i].size()});
     for (const Rule& rule : rules_) apply(rule, sweep);
     sweep.axes = std::move(axes_);
     return sweep;

@@ -18,6 +18,7 @@ struct Override {
 struct SweepPoint {
   std::string name;                 ///< for its directory: letters, digits, `.`, `-`, `+`, `_`
   std::vector<Override> overrides;  ///< of axes and [[also]] first, then of [[where]]
+  std::size_t given = 0;            ///< how many are of axes and [[also]]
   /// As read_scene() takes them.
   std::vector<std::string> texts() const {
     std::vector<std::string> list;

@@ -54,6 +54,7 @@ effective_volume_fraction = 0.4
 radius = 5
 delta_kernel = 3
 collision = "bgk"
+counted_shell = "drag"
 mach_max = 0.3
 [run]
 strain = 8

@@ -20,7 +20,7 @@ struct OptionalModel {
 /// Red cells between sheared walls with all usual models, `size` radii wide, r = `radius` lattice units.
 inline Problem usual_scene(double size, double radius, double phi_effective) {
   const std::string wide = std::to_string(size);
-  const std::string text = "[box]\nsize = [" + wide + ", " + wide + ", " + wide + "]\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n[accuracy]\nallow_unstable = true\n" +
+  const std::string text = "[box]\nsize = [" + wide + ", " + wide + ", " + wide + "]\n[flow]\ncapillary_number = 0.1\n[run]\nstrain = 1\n[accuracy]\nallow_unstable = true\ncounted_shell = \"drag\"\n" +
                            "radius = " + std::to_string(radius) + "\n[[cells]]\neffective_volume_fraction = " + std::to_string(phi_effective) + "\n";
   return parse_scene(text, "usual scene");
 }

@@ -20,6 +20,9 @@ constexpr double volume_tolerance = 0.03;  // of mesh and shell together against
 constexpr double least_lambda = 0.04, largest_lambda = 1;
 double shell_of_collision(double lambda) { return -0.24 * std::sqrt(lambda) - 0.11 * lambda; }
 
+/// What the shell of the viscosity has more than that of the drag, over that of a plane.
+constexpr double viscosity_over_plane = 0.36;
+
 /// Unit outward normals of the vertices: normals of the faces, weighted with the angle at the vertex.
 std::vector<Vector3> vertex_normals(const Mesh& mesh) {
   std::vector<Vector3> normals(mesh.vertices.size(), Vector3::Zero());
@@ -70,6 +73,12 @@ double shell_thickness(const AccuracySpec& accuracy, double radius) {
   // a + plane + curvature/a = radius
   const double half = 0.5 * (radius - plane);
   return radius - (half + std::sqrt(std::max(0.0, half * half - curvature)));
+}
+
+double counted_shell(const AccuracySpec& accuracy, double radius) {
+  const double drag = shell_thickness(accuracy, radius);
+  if (accuracy.shell_thickness || accuracy.cell_size == CellSize::hydrodynamic || accuracy.counted_shell == CountedShell::drag) return drag;
+  return drag + viscosity_over_plane * kernel_shell(accuracy.delta_kernel).plane;
 }
 
 Mesh inset(const Mesh& mesh, double distance) {

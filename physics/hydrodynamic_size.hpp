@@ -17,6 +17,10 @@ KernelShell kernel_shell(int delta_kernel);
 /// `accuracy.cell_size` asks for. With Lambda below 0.04 or above 1 (BGK: tau < 0.7, tau > 1.5), which was not measured, that at the end of the range.
 double shell_thickness(const AccuracySpec& accuracy, double radius);
 
+/// The shell that `accuracy.counted_shell` adds to a cell in phi_effective: that of the drag, or of the viscosity, which is thicker by a part of that of a plane. The latter was fitted to suspensions of
+/// red cells, 2 and 3 points, r = 4 ... 12, phi_effective = 0.2 and 0.45, Ca = 0.08 (docs/accuracy.md). With `accuracy.shell_thickness`, or meshes that lie a shell inside, there is one shell only.
+double counted_shell(const AccuracySpec& accuracy, double radius);
+
 /// The mesh of a scene's cell type at its nominal radius (lattice units), or a shell inside of it with `accuracy.cell_size = "hydrodynamic"`.
 /// @throws InputError where the shell is too thick for the shape: a third of the thickness must be left, and no triangle may turn over.
 Mesh make_cell_mesh(const CellSpec& spec, const AccuracySpec& accuracy, double radius, int frequency);

@@ -17,6 +17,8 @@ enum class CollisionKind { bgk, trt };
 enum class VertexUpdate { averaged, chebyshev, euler };
 /// Which surface has the nominal radius: the mesh, or the one a hydrodynamic shell outside of it (physics/hydrodynamic_size.hpp).
 enum class CellSize { mesh, hydrodynamic };
+/// The shell of a cell in phi_effective: the one with which viscosities do not depend on the resolution, or that of the drag (physics/hydrodynamic_size.hpp).
+enum class CountedShell { viscosity, drag };
 enum class Precision { single_precision, double_precision };
 
 /// [si] What the dimensionless scene stands for. Values that a scene gives with units ("67.7 pN") are converted with these when it is read; nothing else
@@ -100,6 +102,7 @@ struct AccuracySpec {
   double mach_max = 0.1;                     ///< wall (or maximum) velocity / speed of sound must not exceed this
   std::optional<double> shell_thickness;     ///< hydrodynamic shell around a mesh, lattice units; default: the measured one of the kernel
   CellSize cell_size = CellSize::mesh;
+  CountedShell counted_shell = CountedShell::viscosity;         ///< of cells whose meshes have the nominal size
   std::optional<double> shear_modulus;       ///< kappa_S in lattice units; default: the largest stable one
   std::optional<double> shear_rate;          ///< in lattice units; default: the largest that all limits allow
   bool allow_unstable = false;               ///< what measured stability limits refuse is run with a warning

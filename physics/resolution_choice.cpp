@@ -25,7 +25,8 @@ double resolution_cost(const Problem& problem, const LatticeParameters& lattice)
 
 std::vector<ResolutionChoice> resolution_choices(const Problem& problem) {
   std::set<std::pair<double, int>> measured;
-  for (const MeasuredDeviation& m : measured_deviations()) measured.emplace(m.radius, m.delta_kernel);
+  for (const MeasuredDeviation& m : measured_deviations())
+    if (m.counted == counted_by(problem)) measured.emplace(m.radius, m.delta_kernel);
   std::vector<ResolutionChoice> choices;
   if (problem.cells.size() != 1) return choices;  // nothing was measured; and a lattice of a thousand types takes a while
   for (const auto& [radius, delta_kernel] : measured) {

@@ -52,15 +52,24 @@ std::string not_measured(const Problem& p, const LatticeParameters& l) {
 
 }  // namespace
 
-const char* name_of(CountedBy counted) { return counted == CountedBy::mesh ? "mesh" : counted == CountedBy::effective ? "effective" : "hydrodynamic"; }
+const char* name_of(CountedBy counted) {
+  switch (counted) {
+    case CountedBy::mesh: return "mesh volume or number";
+    case CountedBy::viscosity_shell: return "effective volume";
+    case CountedBy::drag_shell: return "effective volume with the shell of the drag";
+    default: return "nominal volume";
+  }
+}
 
 CountedBy counted_by(const Problem& problem) {
   if (problem.accuracy.cell_size == CellSize::hydrodynamic) return CountedBy::hydrodynamic;
-  return !problem.cells.empty() && problem.cells[0].effective_volume_fraction ? CountedBy::effective : CountedBy::mesh;
+  if (problem.cells.empty() || !problem.cells[0].effective_volume_fraction) return CountedBy::mesh;
+  return problem.accuracy.counted_shell == CountedShell::drag ? CountedBy::drag_shell : CountedBy::viscosity_shell;
 }
 
 double counted_fraction(const Problem& problem, const LatticeParameters& lattice) {
-  return counted_by(problem) == CountedBy::effective ? lattice.phi_effective : lattice.phi_nominal;
+  const CountedBy counted = counted_by(problem);
+  return counted == CountedBy::viscosity_shell || counted == CountedBy::drag_shell ? lattice.phi_effective : lattice.phi_nominal;
 }
 
 ResolutionError viscosity_resolution_error(const Problem& problem, const LatticeParameters& lattice) {
@@ -71,8 +80,7 @@ ResolutionError viscosity_resolution_error(const Problem& problem, const Lattice
   for (const MeasuredDeviation& m : measured_deviations())
     if (m.counted == counted && m.delta_kernel == problem.accuracy.delta_kernel) measured[m.phi][m.radius] = {m.deviation, m.uncertainty};
 
-  const std::string settings = fmt::format("counted by {}, {}-point kernel", counted == CountedBy::effective ? "effective volume" : counted == CountedBy::mesh ? "mesh volume or number" : "nominal volume",
-                                           problem.accuracy.delta_kernel);
+  const std::string settings = fmt::format("counted by {}, {}-point kernel", name_of(counted), problem.accuracy.delta_kernel);
   std::vector<std::pair<double, Value>> rows{{0.0, {0, 0}}};
   for (const auto& [fraction, by_radius] : measured) {
     const Value v = at_radius(by_radius, problem.accuracy.radius);

@@ -10,7 +10,7 @@
 namespace corpuscle {
 
 /// How a scene counts its cells decides what their shells do: see docs/accuracy.md.
-enum class CountedBy { mesh, effective, hydrodynamic };
+enum class CountedBy { mesh, viscosity_shell, drag_shell, hydrodynamic };
 const char* name_of(CountedBy counted);
 /// Of the first cell type.
 CountedBy counted_by(const Problem& problem);

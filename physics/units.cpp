@@ -143,7 +143,8 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     cell.area = mesh_area(mesh);
     cell.edge = mean_edge(mesh);
     cell.squared_curvature = squared_curvature(mesh);
-    cell.effective_volume = mesh_effective_volume(mesh, cell.shell_thickness);
+    cell.counted_shell = counted_shell(problem.accuracy, cell.radius);
+    cell.effective_volume = mesh_effective_volume(mesh, cell.counted_shell);
     cell.count = count_of(spec, i, cell, box);
     lattice.phi_geometric += static_cast<double>(cell.count) * cell.volume / box;
     lattice.phi_nominal += static_cast<double>(cell.count) * cell.nominal_volume / box;

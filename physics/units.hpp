@@ -53,7 +53,8 @@ struct CellTypeLattice {
   double edge = 0;              ///< mean edge of the mesh
   double squared_curvature = 0; ///< mean of (2H)^2 over the surface
   double nominal_volume = 0;    ///< of the mesh at the nominal radius; equals `volume` unless CellSize::hydrodynamic
-  double effective_volume = 0;  ///< with the shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
+  double counted_shell = 0;     ///< of `effective_volume`: `shell_thickness` or a thicker one
+  double effective_volume = 0;  ///< with that shell (Steiner: V + A h + H h^2 + 4/3 pi h^3)
   std::int64_t count = 0;
   MembraneModuli moduli;
   double stretching_force = 0;  ///< on each of the two contact patches

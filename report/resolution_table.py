@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
 """Writes physics/resolution_table.cpp from the studies of suspensions in docs/accuracy/: what plan and summary.json know about the error of the viscosity.
 
+Where studies share a volume fraction, all of them are compared with the limit that is known best; a setting that several of them have counts with the viscosity that is.
+
     python report/resolution_table.py [--check]
 
 --check: writes nothing, exit code 1 when the file isn't what the studies say.
 """
 import json
+import math
 import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-STUDIES = {"phi20": 0.2, "phi45": 0.449}
+STUDIES = {0.2: ["phi20"], 0.449: ["phi45", "diffusion"]}
+KNOBS = ("accuracy.radius", "accuracy.delta_kernel", "size", "accuracy.counted_shell")
 TARGET = ROOT / "physics/resolution_table.cpp"
-HEAD = """// Written by report/resolution_table.py from docs/accuracy/phi20.json and docs/accuracy/phi45.json: do not change by hand.
+HEAD = """// Written by report/resolution_table.py from docs/accuracy/phi20.json, phi45.json and diffusion.json: do not change by hand.
 #include "physics/resolution_error.hpp"
 
 namespace corpuscle {
@@ -30,14 +34,30 @@ TAIL = """  };
 """
 
 
+def viscosities(data):
+    """((way to count, points of the kernel, radius), viscosity, error) of the settings that differ in nothing else from the scene of a study."""
+    for point in data["points"]:
+        settings, found = point["settings"], point["observed"]["relative_viscosity"]
+        if point["state"] != "finished" or found["value"] is None or any(settings[k] != data["base"][k] for k in data["knobs"] if k not in KNOBS):
+            continue
+        counted = settings.get("size", "effective")
+        if counted == "effective":
+            counted = settings.get("accuracy.counted_shell", "drag") + "_shell"
+        yield (counted, int(settings["accuracy.delta_kernel"]), float(settings["accuracy.radius"])), found["value"], found["error"]
+
+
 def rows():
-    for name, phi in STUDIES.items():
-        data = json.loads((ROOT / f"docs/accuracy/{name}.json").read_text())
-        for point in data["points"]:
-            settings, found = point["settings"], point["observed"]["relative_viscosity"]["deviation"]
-            if point["state"] != "finished" or found["value"] is None or any(settings[k] != data["base"][k] for k in data["knobs"] if k not in ("accuracy.radius", "accuracy.delta_kernel", "size")):
-                continue
-            yield phi, settings["size"], int(settings["accuracy.delta_kernel"]), float(settings["accuracy.radius"]), found["value"], abs(found["error"])
+    for phi, names in STUDIES.items():
+        studies = [json.loads((ROOT / f"docs/accuracy/{name}.json").read_text()) for name in names]
+        limit = min((data["reference"]["relative_viscosity"] for data in studies), key=lambda reference: reference["error"])
+        best = {}
+        for data in studies:
+            for setting, value, error in viscosities(data):
+                if setting not in best or error < best[setting][1]:
+                    best[setting] = value, error
+        for setting, (value, error) in best.items():
+            ratio = value / limit["value"]
+            yield phi, *setting, ratio - 1, ratio * math.hypot(error / value, limit["error"] / limit["value"])
 
 
 def main():

@@ -51,8 +51,36 @@ TEST_CASE("The shell is that of the kernel unless the scene gives one", "[size]"
   CHECK(shell_thickness(accuracy, 8) == 0);
 }
 
+TEST_CASE("The shell that is counted in a fraction is thicker than that of the drag, unless the scene gives it", "[size]") {
+  AccuracySpec accuracy;
+  for (const int points : {2, 3, 4}) {
+    accuracy.delta_kernel = points;
+    accuracy.counted_shell = CountedShell::viscosity;
+    // By the same length whatever the radius: part of the plane's.
+    const double more = counted_shell(accuracy, 4) - shell_thickness(accuracy, 4);
+    CHECK(more > 0.3 * kernel_shell(points).plane);
+    CHECK(more < 0.5 * kernel_shell(points).plane);
+    CHECK(counted_shell(accuracy, 12) - shell_thickness(accuracy, 12) == Approx(more));
+    accuracy.counted_shell = CountedShell::drag;
+    CHECK(counted_shell(accuracy, 4) == shell_thickness(accuracy, 4));
+  }
+  accuracy.counted_shell = CountedShell::viscosity;
+  accuracy.shell_thickness = 0.3;
+  CHECK(counted_shell(accuracy, 4) == 0.3);
+
+  const auto lattice = [](const std::string& more) { return to_lattice(scene("effective_volume_fraction = 0.2", "radius = 4\n" + more)); };
+  const LatticeParameters usual = lattice(""), drag = lattice("counted_shell = 'drag'");
+  CHECK(usual.cells[0].count < drag.cells[0].count);
+  CHECK(usual.cells[0].shell_thickness == drag.cells[0].shell_thickness);
+  CHECK(usual.cells[0].effective_radius == drag.cells[0].effective_radius);
+  CHECK(usual.phi_effective == Approx(0.2).epsilon(0.01));
+  CHECK(drag.phi_effective == Approx(0.2).epsilon(0.01));
+  CHECK(parse_scene(to_toml(scene("count = 1", "counted_shell = 'drag'")), "merged.toml").accuracy.counted_shell == CountedShell::drag);
+  CHECK_THROWS_AS(scene("count = 1", "shell_thickness = 0.3\ncounted_shell = 'drag'"), InputError);  // one shell only
+}
+
 TEST_CASE("Radii and fractions of cells whose mesh has the nominal size", "[size]") {
-  const Problem problem = scene("shape = 'sphere'\nvolume_fraction = 0.1\n[[cells]]\nshape = 'sphere'\nrelative_radius = 0.5\ncount = 3", "radius = 8");
+  const Problem problem = scene("shape = 'sphere'\nvolume_fraction = 0.1\n[[cells]]\nshape = 'sphere'\nrelative_radius = 0.5\ncount = 3", "radius = 8\ncounted_shell = 'drag'");
   const LatticeParameters lattice = to_lattice(problem);
   double effective = 0;
   for (const auto& cell : lattice.cells) {

@@ -16,11 +16,12 @@ ResolutionError error_of(const std::string& cells, const std::string& accuracy, 
 }
 
 std::string accuracy_of(const MeasuredDeviation& m) {
-  return "radius = " + std::to_string(m.radius) + "\ndelta_kernel = " + std::to_string(m.delta_kernel) + (m.counted == CountedBy::hydrodynamic ? "\ncell_size = \"hydrodynamic\"" : "");
+  return "radius = " + std::to_string(m.radius) + "\ndelta_kernel = " + std::to_string(m.delta_kernel) + (m.counted == CountedBy::hydrodynamic ? "\ncell_size = \"hydrodynamic\"" : "") +
+         (m.counted == CountedBy::drag_shell ? "\ncounted_shell = \"drag\"" : "");
 }
 
 std::string cells_of(const MeasuredDeviation& m, double phi) {
-  return std::string(m.counted == CountedBy::effective ? "effective_volume_fraction = " : "volume_fraction = ") + std::to_string(phi);
+  return std::string(m.counted == CountedBy::viscosity_shell || m.counted == CountedBy::drag_shell ? "effective_volume_fraction = " : "volume_fraction = ") + std::to_string(phi);
 }
 
 }  // namespace
@@ -77,8 +78,8 @@ TEST_CASE("resolution error: finer than the finest", "[resolution_error]") {
   const std::string fraction = "effective_volume_fraction = 0.2";
   double finest = 0;
   for (const auto& m : measured_deviations())
-    if (m.counted == CountedBy::effective && m.delta_kernel == 3 && m.phi < 0.3) finest = std::max(finest, m.radius);
-  const ResolutionError there = error_of(fraction, "delta_kernel = 3\nradius = " + std::to_string(finest)), beyond = error_of(fraction, "delta_kernel = 3\nradius = " + std::to_string(2 * finest));
+    if (m.counted == CountedBy::drag_shell && m.delta_kernel == 3 && m.phi < 0.3) finest = std::max(finest, m.radius);
+  const ResolutionError there = error_of(fraction, "counted_shell = \"drag\"\ndelta_kernel = 3\nradius = " + std::to_string(finest)), beyond = error_of(fraction, "counted_shell = \"drag\"\ndelta_kernel = 3\nradius = " + std::to_string(2 * finest));
   // Numbers of cells are whole, so that phi isn't quite the same.
   CHECK(beyond.value == Approx(there.value / 2).margin(0.005));
   CHECK(beyond.uncertainty == Approx(there.uncertainty).epsilon(0.1));

@@ -61,6 +61,14 @@ TEST_CASE("study: knobs, settings and repeats", "[study]") {
   CHECK_FALSE(study.discard);
 }
 
+TEST_CASE("study: what a [[where]] sets is no knob", "[study]") {
+  const Folder folder;
+  const Study study = folder.parse(axes + "[[where]]\nmatch = { \"accuracy.radius\" = 4 }\nset = { \"run.strain\" = 77 }\n" + observed + limit);
+  CHECK(study.knobs == Names{"accuracy.radius", "size", "flow.reynolds_number_max"});
+  CHECK(study.settings[0] == Names{"4", "count", "0.1"});
+  CHECK(study.sweep.points[0].overrides.back().key == "run.strain");
+}
+
 TEST_CASE("study: the other references", "[study]") {
   const Folder folder;
   const Study point = folder.parse(axes + observed + "wall_layer = 0\ndiscard = 2.5\n[study.reference]\npoint = { \"accuracy.radius\" = 4, size = \"fraction\" }\n");
