@@ -115,6 +115,11 @@ def front(study, tally):
     return Drawn(figure, None, [f"Each point is a setting; the line is the front. Dotted: 15, 5 and 2 %.{labels} Hollow: another knob differs from the base scene. Reference: {reference}."])
 
 
+def in_family(settings, reference):
+    """Whether a point is one of an extrapolated family: these have all knobs but the resolution."""
+    return any(all(settings.get(knob) == setting for knob, setting in family["settings"].items()) for family in reference.get("families", []))
+
+
 def convergence(study, tally):
     """Each observable against 1/resolution, by family, with the extrapolation."""
     if study.along is None or not any("families" in r for r in study.data["reference"].values()):
@@ -126,17 +131,20 @@ def convergence(study, tally):
         for point in study.points:
             observed = point["observed"][name]
             value, error = number(observed["value"]), number(observed["error"])
-            if not math.isfinite(value) or not study.is_otherwise_base(point["settings"]):
+            base = study.is_otherwise_base(point["settings"])
+            if not math.isfinite(value) or not (base or in_family(point["settings"], reference)):
                 continue
             colour, symbol = study.look(point["settings"])
-            axes.errorbar(1 / number_of(point["settings"][study.along]), value, yerr=error if math.isfinite(error) else 0, color=colour, marker=symbol, linestyle="none", elinewidth=0.6, zorder=3)
+            axes.errorbar(1 / number_of(point["settings"][study.along]), value, yerr=error if math.isfinite(error) else 0, color=colour, marker=symbol, linestyle="none", elinewidth=0.6,
+                          markerfacecolor=colour if base else "white", zorder=3)
             low, high = np.nanmin([low, value]), np.nanmax([high, value])
         for family in reference.get("families", []):
             if not math.isfinite(number(family["limit"])):
                 continue
             colour, _ = study.look(family["settings"])
             x = np.linspace(0, 1 / number(family["from_resolution"]), 60)
-            axes.plot(x, number(family["limit"]) + number(family["first"]) * x + number(family["second"]) * x * x, color=colour, linewidth=0.7, zorder=2)
+            axes.plot(x, number(family["limit"]) + number(family["first"]) * x + number(family["second"]) * x * x, color=colour, linewidth=0.7,
+                      linestyle="-" if study.is_otherwise_base(family["settings"]) else "--", zorder=2)
         value, error = number(reference["value"]), number(reference["error"])
         if math.isfinite(value):
             axes.axhspan(value - error, value + error, color=GREY, alpha=0.25, linewidth=0)
@@ -145,7 +153,8 @@ def convergence(study, tally):
             axes.set_ylim(min(low, value - error) - room, max(high, value + error) + room)
         axes.set(xlim=(0, None), xlabel=f"1/{short(study.along)}", ylabel=name.replace("_", " "))
     figure.legend(handles=study.keys(), loc="outside lower center", ncols=6)
-    return Drawn(figure, None, ["Lines: extrapolation of each family; band: their weighted mean and its error."])
+    others = any(not study.is_otherwise_base(family["settings"]) for reference in study.data["reference"].values() for family in reference.get("families", []))
+    return Drawn(figure, None, ["Lines: extrapolation of each family; band: their weighted mean and its error." + (" Hollow, dashed: another knob differs from the base scene." if others else "")])
 
 
 FIGURES = [("front", "Error against cost", front), ("convergence", "Convergence", convergence)]
