@@ -120,7 +120,7 @@ std::int64_t count_of(const CellSpec& spec, std::size_t type, const CellTypeLatt
 
 void set_cells(const Problem& problem, LatticeParameters& lattice) {
   const double box = lattice.box_volume();
-  double vertices = 0, one = 0;
+  double vertices = 0, one = 0, with_drag_shells = 0;
   for (std::size_t i = 0; i < problem.cells.size(); ++i) {
     const CellSpec& spec = problem.cells[i];
     CellTypeLattice cell;
@@ -150,11 +150,14 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
     lattice.phi_nominal += static_cast<double>(cell.count) * cell.nominal_volume / box;
     lattice.phi_effective += static_cast<double>(cell.count) * cell.effective_volume / box;
     vertices += static_cast<double>(cell.count * cell.vertices);
-    one = std::max(one, cell.effective_volume / box);
+    // What can be packed is known with these shells, whichever are counted.
+    const double with_shell = mesh_effective_volume(mesh, cell.shell_thickness) / box;
+    with_drag_shells += static_cast<double>(cell.count) * with_shell;
+    one = std::max(one, with_shell);
     lattice.cells.push_back(cell);
   }
   // A fraction at the limit may round up by half a cell.
-  const double excess = std::max((lattice.phi_geometric - one / 2) / packable, (lattice.phi_effective - one / 2) / packable_effective);
+  const double excess = std::max((lattice.phi_geometric - one / 2) / packable, (with_drag_shells - one / 2) / packable_effective);
   if (excess > 1) {
     std::string keys;
     for (std::size_t i = 0; i < problem.cells.size(); ++i) {
@@ -165,8 +168,8 @@ void set_cells(const Problem& problem, LatticeParameters& lattice) {
                                                         : fmt::format("cells.{}.effective_volume_fraction = {} (packable: {})", i, *spec.effective_volume_fraction,
                                                                       at_most(*spec.effective_volume_fraction / excess)));
     }
-    throw InputError(fmt::format("{} fills the box to phi = {:.4g}, phi_effective = {:.4g}, which can't be packed: at most {} and {} are allowed; lower it or enlarge the box", keys,
-                                 lattice.phi_geometric, lattice.phi_effective, packable, packable_effective));
+    throw InputError(fmt::format("{} fills the box to phi = {:.4g}, {:.4g} with the shells of the drag, which can't be packed: at most {} and {} are allowed; lower it or enlarge the box", keys,
+                                 lattice.phi_geometric, with_drag_shells, packable, packable_effective));
   }
   if (vertices > std::numeric_limits<std::int32_t>::max()) {
     throw InputError(fmt::format("the cells have {:.3g} vertices in all, but at most {} are supported: lower the number of cells or accuracy.subdivision", vertices,

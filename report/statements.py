@@ -58,9 +58,18 @@ def newtonian(sweep):
     return "q of η ~ Ca^−q at φ: " + by_phi([(phi, text(q)) for phi, q in found if phi < 0.3]), judged(q.value < 0.1 for q in low)
 
 
+def stiff_exponent(sweep, phi):
+    """q between the two smallest Ca: in the whole range a plateau at large Ca takes part in the fit."""
+    stiff, soft = sorted(sweep.of(phi=phi), key=lambda r: r.ca)[:2]
+    lever = math.log(soft.ca / stiff.ca)
+    return combined(lambda a, b: math.log(a / b) / lever, [r.estimate("relative_viscosity") for r in (stiff, soft)])
+
+
 def thinning(sweep):
     found = [(phi, q) for phi, q in exponents(sweep) if phi > 0.4]
-    return "q at φ: " + by_phi([(phi, text(q)) for phi, q in found]), judged(abs(q.value - 0.5) < 0.15 for phi, q in found if phi > 0.6)
+    words = "q at φ: " + by_phi([(phi, text(q)) for phi, q in found])
+    words += "; between the two smallest Ca: " + by_phi([(phi, text(stiff_exponent(sweep, phi))) for phi, _ in found])
+    return words, judged(abs(q.value - 0.5) < 0.15 for phi, q in found if phi > 0.6)
 
 
 def yield_stress(sweep):

@@ -75,6 +75,9 @@ TEST_CASE("The shell that is counted in a fraction is thicker than that of the d
   CHECK(usual.cells[0].effective_radius == drag.cells[0].effective_radius);
   CHECK(usual.phi_effective == Approx(0.2).epsilon(0.01));
   CHECK(drag.phi_effective == Approx(0.2).epsilon(0.01));
+  // What fits in is known with the shells of the drag.
+  CHECK(to_lattice(scene("count = 352", "radius = 4")).phi_effective > 0.92);
+  CHECK(mentions(refusal(scene("count = 400", "radius = 4")), "with the shells of the drag, which can't be packed"));
   CHECK(parse_scene(to_toml(scene("count = 1", "counted_shell = 'drag'")), "merged.toml").accuracy.counted_shell == CountedShell::drag);
   CHECK_THROWS_AS(scene("count = 1", "shell_thickness = 0.3\ncounted_shell = 'drag'"), InputError);  // one shell only
 }
