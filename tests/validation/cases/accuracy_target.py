@@ -15,7 +15,7 @@ eta_r - 1 ~ phi^1.5, between the exponents of both studies.
 """
 COST = 6
 PHI, CA, BOX, STRAIN, SETTLED, EXPONENT = 0.32, 0.03, (6, 4.5, 6), 20, 5, 1.5
-TARGETS, SEEDS, FINEST = (0.2, 0.12), (1, 2, 3, 4), 9
+TARGETS, SEEDS, FINEST = (0.12, 0.05), (1, 2, 3, 4), 9
 
 
 def suspension(seed, **accuracy):
