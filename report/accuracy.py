@@ -3,7 +3,7 @@
 
     python report/accuracy.py RESULTS --docs DOCS
 
-RESULTS holds the studies' directories (capsule, red_cell, phi20, phi45, diffusion), as `corpuscle tradeoff scenes/accuracy/NAME_study.toml --output RESULTS/NAME` makes them. Writes DOCS/accuracy.md,
+RESULTS holds the studies' directories (capsule, red_cell, phi20, phi45, diffusion, diffusion_wide), as `corpuscle tradeoff scenes/accuracy/NAME_study.toml --output RESULTS/NAME` makes them. Writes DOCS/accuracy.md,
 DOCS/accuracy/NAME.json and .md (all points), DOCS/figures/accuracy/NAME_*.png. The prose is accuracy_prose.md, in which {{NAME}} stands for a study.
 Needs: pip install numpy matplotlib.
 """
