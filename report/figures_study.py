@@ -3,7 +3,7 @@ import math
 
 from analysis_data import BadAnalysis, number, read_json
 from panels import Drawn, Missing
-from style import COLUMN, GREY, INK, PAGE, key, np, plt
+from style import COLUMN, GREY, INK, PAGE, key, log_ticks, np, plt
 
 STUDY_FORMAT = "corpuscle-tradeoff-1"
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]  # Okabe and Ito
@@ -103,11 +103,13 @@ def front(study, tally):
             axes.step([b[0] for b in best] + [max(row[0] for row in rows)], [b[1] for b in best] + [best[-1][1]], where="post", color=INK, linewidth=0.8, zorder=1)
         for target in (15, 5, 2):
             axes.axhline(target, color=GREY, linewidth=0.5, linestyle=":")
-        axes.set(xscale="log", yscale="log", xlabel="core seconds per strain", title=panel.replace("_", " "))
+        axes.set(xscale="log", yscale="log", title=panel.replace("_", " "))
+        log_ticks(axes.xaxis)
     if not drawn:
         plt.close(figure)
         raise Missing("no point has both a deviation and a cost")
     grid[0][0].set_ylabel("deviation from the reference (%)")
+    grid[0][len(panels) // 2].set_xlabel("core seconds per strain")  # once: panels are too narrow for one each
     grid[0][0].set_ylim(bottom=0.03)
     figure.legend(handles=study.keys(), loc="outside lower center", ncols=6)
     reference = ", ".join(f"{name} {number(r['value']):.4g} ± {number(r['error']):.2g}" for name, r in study.data["reference"].items())
