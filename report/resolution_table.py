@@ -34,6 +34,12 @@ TAIL = """  };
 """
 
 
+def studies():
+    """(phi, data of all its studies)."""
+    for phi, names in STUDIES.items():
+        yield phi, [json.loads((ROOT / f"docs/accuracy/{name}.json").read_text()) for name in names]
+
+
 def viscosities(data):
     """((way to count, points of the kernel, radius), viscosity, error) of the settings that differ in nothing else from the scene of a study."""
     for point in data["points"]:
@@ -47,11 +53,10 @@ def viscosities(data):
 
 
 def rows():
-    for phi, names in STUDIES.items():
-        studies = [json.loads((ROOT / f"docs/accuracy/{name}.json").read_text()) for name in names]
-        limit = min((data["reference"]["relative_viscosity"] for data in studies), key=lambda reference: reference["error"])
+    for phi, of_phi in studies():
+        limit = min((data["reference"]["relative_viscosity"] for data in of_phi), key=lambda reference: reference["error"])
         best = {}
-        for data in studies:
+        for data in of_phi:
             for setting, value, error in viscosities(data):
                 if setting not in best or error < best[setting][1]:
                     best[setting] = value, error

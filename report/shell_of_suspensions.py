@@ -8,14 +8,13 @@ exponents of the studies; the shell is the one with which runs of all resolution
 """
 import json
 import math
-import pathlib
 import subprocess
 import sys
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-STUDIES = {0.2: ["phi20"], 0.449: ["phi45", "diffusion"]}
+from resolution_table import ROOT, STUDIES, studies, viscosities
+
 COARSEST = 4  # meshes of r = 3 fold
 RESOLVED = 0.004  # least error of a point, relative: packings differ by that
 
@@ -53,17 +52,14 @@ class Shells:
 def points(kernel, shells):
     """phi: (exponent, [(r, counted shell, eta_r, error)])."""
     found = {}
-    for phi, names in STUDIES.items():
-        for name in names:
-            data = json.loads((ROOT / f"docs/accuracy/{name}.json").read_text())
+    for phi, of_phi in studies():
+        for data in of_phi:
             exponent = data["fraction"]["exponents"]["relative_viscosity"]
-            for point in data["points"]:
-                settings, observed = point["settings"], point["observed"]["relative_viscosity"]
-                r = float(settings["accuracy.radius"])
-                if settings.get("size", "effective") != "effective" or int(settings["accuracy.delta_kernel"]) != kernel or r < COARSEST or observed["value"] is None:
+            for (counted, points_of_kernel, r), value, error in viscosities(data):
+                if not counted.endswith("_shell") or points_of_kernel != kernel or r < COARSEST:
                     continue
-                shell = shells.plane + shells.curvature / r + (shells.more if settings.get("accuracy.counted_shell") == "viscosity" else 0)
-                found.setdefault(phi, (exponent, []))[1].append((r, shell, observed["value"], max(observed["error"], RESOLVED * observed["value"])))
+                shell = shells.plane + shells.curvature / r + (shells.more if counted == "viscosity_shell" else 0)
+                found.setdefault(phi, (exponent, []))[1].append((r, shell, value, max(error, RESOLVED * value)))
     return found
 
 

@@ -27,13 +27,15 @@ std::string refusal(const std::string& accuracy, const std::string& cells = "eff
   return "accepted";
 }
 
-std::vector<ResolutionChoice> choices() { return resolution_choices(with("collision = \"trt\"\nrelaxation_time = 2.0")); }
+constexpr const char* drag = "\ncounted_shell = \"drag\"";
+std::vector<ResolutionChoice> choices(const std::string& accuracy) { return resolution_choices(with("collision = \"trt\"\nrelaxation_time = 2.0" + accuracy)); }
 
 }  // namespace
 
 TEST_CASE("resolution choice: choices are in the order of their cost, and a front is what no cheaper one equals", "[resolution_choice]") {
-  const auto all = choices();
-  REQUIRE(all.size() > 5);
+  REQUIRE(choices(drag).size() > 8);
+  REQUIRE(choices("").size() > 7);
+  const auto all = choices(GENERATE(as<std::string>{}, drag, ""));
   for (std::size_t i = 1; i < all.size(); ++i) CHECK(all[i - 1].cost <= all[i].cost);
   const auto front = worthwhile(all);
   REQUIRE(!front.empty());
@@ -52,11 +54,12 @@ TEST_CASE("resolution choice: choices are in the order of their cost, and a fron
 }
 
 TEST_CASE("resolution choice: a target chooses the cheapest setting whose error is below it, and the merged scene has that", "[resolution_choice]") {
-  const auto all = choices();
+  const std::string shell = GENERATE(as<std::string>{}, drag, "");
+  const auto all = choices(shell);
   for (const auto& choice : all) {
     const double target = choice.bound + 1e-9;
     if (target > 1) continue;
-    const Problem problem = with(fmt::format("target = {}", target));
+    const Problem problem = with(fmt::format("target = {}", target) + shell);
     const auto expected = std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.bound <= target; });
     CAPTURE(target, choice.radius, choice.delta_kernel);
     CHECK(problem.accuracy.radius == expected->radius);
